@@ -56,7 +56,8 @@ def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
             sure = float(solved.uncertainty[mode]) if len(solved.uncertainty) else np.inf
             cells = [c for c in run.cells if c.omega == omega and c.shares == "nothing" and _is(c, frequency, run)]
             agree = [c for c in cells if c.verdict == "pass"]
-            rest = tuple(f"{c.code} ({c.verdict})" for c in cells if c.verdict not in ("pass", "estimate", "measured"))
+            apart = [c for c in cells if c.verdict not in ("pass", "coarse", "estimate", "measured")]
+            rest = tuple(f"{c.code} ({c.verdict})" for c in apart)
             largest = max((abs(c.difference) for c in agree if c.difference is not None), default=np.nan)
             codes = tuple(dict.fromkeys(c.code for c in agree))
             out.append(Confirmed(int(t), omega, frequency, sure, codes, largest, rest))

@@ -62,7 +62,7 @@ def _cell(row: Any) -> Iterator[str]:
         yield "case, code: one is empty"
     if row.mode == 0 and (row.frequency is not None or row.verdict not in UNANSWERED):
         yield f"mode: 0 of a cell with an answer ({row.verdict}): counted from 1"
-    if row.verdict in ("pass", "known difference", "measured") and row.difference is None:
+    if row.verdict in ("pass", "coarse", "known difference", "measured") and row.difference is None:
         yield f"difference: none, with the verdict {row.verdict}"
     measured = getattr(row, "role", row.verdict) == "measured"
     if measured != (row.verdict == "measured") and not (measured and row.verdict in UNANSWERED):

@@ -20,7 +20,7 @@ from ..input import atomic
 from . import checks
 
 Verdict = Literal[
-    "pass", "fail", "inconclusive", "known difference", "estimate", "measured", "not applicable", "not run"
+    "pass", "coarse", "fail", "inconclusive", "known difference", "estimate", "measured", "not applicable", "not run"
 ]
 Unit = Literal["rad_s", "rpm", "gamma"]
 

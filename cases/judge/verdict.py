@@ -1,7 +1,8 @@
 """Verdicts on differences, as pure functions of numbers.
 
 ============================ ===================================================================================
-pass                         ``|d| + u ≤ target``
+pass                         ``|d| + u ≤ target``, and the target is at most ``WIDEST``
+coarse                       ``|d| + u ≤ target`` of a wider target: shown, never evidence
 fail                         ``|d| − u > target``, or a code gave no answer to a case that it accepts
 inconclusive                 neither pass nor fail: refine
 known difference             the cause is named, its size is computed, the remainder is within the target, and
@@ -20,6 +21,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from .results import Verdict
+
+WIDEST = 5e-3
+"""Widest target, relative, at which agreement is evidence; five times the paper's."""
+
+AGREES: tuple[Verdict, ...] = ("pass", "coarse")
+"""Verdicts of a difference within its target."""
 
 Judgement = tuple[Verdict, str]
 """The verdict, and the reason for any verdict other than a plain pass."""
@@ -41,11 +48,18 @@ def judge(difference: float, uncertainty: float | None, target: float) -> Judgem
     if uncertainty is None:
         return "inconclusive", "unknown uncertainty"
     if abs(difference) + uncertainty <= target:
-        return "pass", ""
+        return within(target)
     size = f"{percent(difference)} ± {unsigned(uncertainty)}"
     if abs(difference) - uncertainty > target:
         return "fail", f"{size} exceeds {unsigned(target)}"
     return "inconclusive", f"{size}: too uncertain for a target of {unsigned(target)}"
+
+
+def within(target: float) -> Judgement:
+    """The verdict on a difference within its target: agreement, or too coarse to be evidence."""
+    if target <= WIDEST:
+        return "pass", ""
+    return "coarse", f"agreement within {unsigned(target)} is no evidence; {unsigned(WIDEST)} would be"
 
 
 def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judgement:
@@ -66,7 +80,7 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
             f"{names}: size unknown, because core with all effects has no similar mode; core without them agrees",
         )
     if abs(shift) <= target:
-        return "pass", ""
+        return within(target)
     changes = {
         e.name: "not comparable" if e.change is None else percent(e.change) for e in effects if not _small(e, shift)
     }
@@ -86,7 +100,7 @@ def bracketed(difference: float, uncertainty: float | None, target: float) -> Ju
         target: relative.
     """
     verdict, reason = judge(difference, uncertainty, target)
-    if verdict == "pass" or uncertainty is None:
+    if verdict in AGREES or uncertainty is None:
         return verdict, reason
     away = -difference / (1.0 + difference)
     bound = f"estimate with a stated bound of {unsigned(uncertainty)}; core differs by {percent(away)},"
@@ -119,9 +133,9 @@ def discretised(
         size: its error: core's answer with it against the reference; ``difference`` if omitted.
     """
     verdict, reason = judge(difference, uncertainty, target)
-    if verdict == "pass" or limit is None:
+    if verdict in AGREES or limit is None:
         return verdict, reason
-    if judge(remainder, uncertainty, target)[0] != "pass":
+    if judge(remainder, uncertainty, target)[0] not in AGREES:
         return verdict, reason
     error = f"discretisation error of {what}: {percent(difference if size is None else size)}"
     if abs(limit) + (uncertainty or 0.0) <= target:

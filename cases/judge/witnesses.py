@@ -1,8 +1,8 @@
 """Independent confirmation of a case's answers, counted by groups of independent origin.
 
 A witness is a column with answers: a code, a closed form or a printed series. It counts if it agrees with core in every
-mode and at every speed that it answers. A witness with a known difference, or whose own error bound is too wide,
-does not count; neither does a measurement.
+mode and at every speed that it answers. A witness with a known difference, with a target too wide to be evidence, or with an
+error bound of its own that is too wide does not count; neither does a measurement.
 
 Witnesses with the same engine, theory or rotation terms may share an error, so they form one *group*, even if only a
 third witness links them. A code with core's discretisation or frames confirms that core solves its model, not that the
@@ -20,13 +20,13 @@ from typing import Literal
 
 from ...references.protocol.interface import CORE
 from .results import Cell, Origin, Run
-from .verdict import judge
+from .verdict import AGREES, judge
 
 FINE = 1e-4
 """Relative difference within which independent models should agree after extrapolation."""
 
 Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared"]
-Standing = Literal["agrees", "known difference", "estimate", "open", "disagrees"]
+Standing = Literal["agrees", "coarse", "known difference", "estimate", "open", "disagrees"]
 
 INDEPENDENT: tuple[Kind, ...] = ("code", "closed form", "printed source")
 """Kinds that count."""
@@ -109,8 +109,8 @@ def _standing(cell: Cell, target: float) -> Standing:
     if cell.difference is None:
         return "disagrees" if cell.verdict == "fail" else "open"
     verdict, _ = judge(cell.difference, cell.uncertainty, target)
-    if verdict == "pass":
-        return "agrees"
+    if verdict in AGREES:
+        return "agrees" if verdict == "pass" else "coarse"
     if cell.verdict in ("known difference", "estimate"):
         return cell.verdict
     return "disagrees" if verdict == "fail" else "open"
@@ -118,7 +118,7 @@ def _standing(cell: Cell, target: float) -> Standing:
 
 def _worst(standings: Iterable[Standing]) -> Standing:
     found = list(standings)
-    order: tuple[Standing, ...] = ("disagrees", "open", "estimate", "known difference", "agrees")
+    order: tuple[Standing, ...] = ("disagrees", "open", "estimate", "known difference", "coarse", "agrees")
     return next(s for s in order if s in found)
 
 

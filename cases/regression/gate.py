@@ -1,8 +1,8 @@
 """Comparison of a run with an earlier one: moved, worse and missing answers.
 
 Cells are identified by case, code, rotor speed and mode. A run fails for a new miss (including that of a new cell), a
-missing answer, a wider target, or a seeded fault that is no longer detected. Moved frequencies are listed and fail a run
-only on request, since an improved discretisation also moves them. Measured data are not answers: they are counted but
+missing answer, a wider target, or a seeded fault that is no longer detected or tried. Moved frequencies are listed and fail
+a run only on request, since an improved discretisation also moves them. Measured data are not answers: they are counted but
 cannot fail a run.
 """
 
@@ -15,7 +15,14 @@ from .history import Detection, Entry, Key, Point
 MOVED = 1e-9
 """Relative change above which a frequency counts as moved."""
 
-RANK: dict[Verdict, int] = {"pass": 0, "known difference": 1, "estimate": 2, "inconclusive": 3, "fail": 4}
+RANK: dict[Verdict, int] = {
+    "pass": 0,
+    "coarse": 1,
+    "known difference": 2,
+    "estimate": 3,
+    "inconclusive": 4,
+    "fail": 5,
+}
 """Severity of a verdict; other verdicts are not answers. ``measured`` is absent: data are not judged."""
 
 MISS = RANK["inconclusive"]
@@ -58,7 +65,7 @@ class Comparison:
         better: cells with a better verdict.
         gone: missing answers.
         new: cells with an answer that had none.
-        undetected: seeded faults that are no longer detected; all of them if none is run any more.
+        undetected: seeded faults that the earlier run detected and this one does not, or does not try.
         missed: seeded faults that this run does not detect.
     """
 
@@ -87,18 +94,24 @@ class Comparison:
         return not (worse or (strict and self.moved))
 
 
+def misses(entry: Entry) -> int:
+    """Number of cells of a run that failed or were inconclusive, and of seeded faults that it did not detect."""
+    return sum(RANK.get(p.verdict, 0) >= MISS for p in entry.cells) + sum(not c.detected_by for c in entry.controls)
+
+
 def nothing(after: Entry) -> Entry:
     """The baseline of a first run: no cells, so that every miss counts."""
     return Entry("nothing", "", after.machine, after.versions, ())
 
 
 def within(entry: Entry, other: Entry) -> Entry:
-    """``entry`` restricted to the cases of ``other``."""
+    """``entry`` restricted to the cases and the seeded faults of ``other``."""
     cases = {p.case for p in other.cells}
+    tried = {c.control for c in other.controls}
     return replace(
         entry,
         cells=tuple(p for p in entry.cells if p.case in cases),
-        controls=tuple(c for c in entry.controls if c.case in cases),
+        controls=tuple(c for c in entry.controls if c.case in cases and c.control in tried),
     )
 
 
@@ -128,7 +141,7 @@ def compare(
         better=tuple(c for c in changes if _better(c)),
         gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in listed),
         new=tuple(c.after for c in changes if c.after.frequency and not (c.before and c.before.frequency)),
-        undetected=tuple(c for c in before.controls if c.detected_by and not tried.get(c.control, bool(tried))),
+        undetected=tuple(c for c in before.controls if c.detected_by and not tried.get(c.control, False)),
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),
         measured=sum(p.verdict == "measured" for p in after.cells),

@@ -2,6 +2,7 @@
 
 from collections.abc import Collection, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from ..judge.measured import Validation, explained
 from ..judge.pairing import LEAST_MAC, MOTIONS, Array, Pair, pair
 from ..judge.results import Cell, Level, Verdict
 from ..judge.uncertainty import ROUNDING, WARY, Estimate
-from ..judge.verdict import Judgement, bracketed, discretised, judge, known
+from ..judge.verdict import AGREES, Judgement, bracketed, discretised, judge, known
 from .reference import Reference
 from .refinement import RefinedMode, Refinements, follow
 
@@ -78,15 +79,19 @@ def refined(
         return [failed(head, omega, refinements.failure)], []
     refined_modes = follow(refinements.answers, reference.core.wanted, order, bracket)
     late = f"finer: {refinements.failure.reason}" if refinements.failure else ""
-    doubt = _extra(reference, refinements.answers[-1], refined_modes) or _damped(refinements.answers[-1])
+    doubt = (
+        _extra(reference, refinements.answers[-1], refined_modes)
+        or _damped(refinements.answers[-1])
+        or (_unrefined(refinements.answers) if order and not bracket else "")
+    )
     cells = []
     for i, mine in enumerate(refined_modes):
         cell = _row(head, omega, i, reference, refinements.answers[-1], mine.partner)
         if still := _still(reference, i, head.motions):
             cell = replace(cell, verdict="not applicable", reason=still)
         elif mine.estimate:
-            cell = _judged(cell, reference, i, mine, late)
-        if doubt and cell.verdict in ("pass", "known difference"):
+            cell = _judged(cell, reference, i, mine, late, order)
+        if doubt and cell.verdict in (*AGREES, "known difference"):
             cell = replace(cell, verdict="inconclusive", reason=_join(doubt, cell.reason))
         cells.append(cell)
     levels = [
@@ -103,6 +108,14 @@ def _extra(reference: Reference, answer: Modes, refined_modes: Sequence[RefinedM
     top = max((answer.frequencies[m.partner.mode] for m in refined_modes if m.partner.mode is not None), default=0.0)
     extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in paired and f < top]
     return f"modes at {', '.join(extra)} rad/s are none of core's: spurious, or missing in core?" if extra else ""
+
+
+def _unrefined(answers: Sequence[Modes]) -> str:
+    """Two refinements with the same digits in every mode: their spread says nothing about the discretisation error."""
+    for coarse, fine in pairwise(answers):
+        if np.array_equal(coarse.frequencies, fine.frequencies):
+            return f"the answers for {coarse.elements} and {fine.elements} elements are identical: not refined"
+    return ""
 
 
 def _damped(answer: Modes) -> str:
@@ -221,7 +234,7 @@ def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
     If the number is not within the target of the converged answer, its difference is known if core with that
     discretisation agrees with it and the refinements of that discretisation lead to the converged answer.
     """
-    if cell.verdict == "pass" or not coarse or not cell.frequency or not cell.reference or cell.difference is None:
+    if cell.verdict in AGREES or not coarse or not cell.frequency or not cell.reference or cell.difference is None:
         return cell
     remainder, limit, size = (
         value - 1.0
@@ -257,7 +270,7 @@ def given(head: Head, omega: float, reference: Reference, refinements: Refinemen
             verdict, reason = discretised(difference, base.uncertainty, head.target, 0.0, limit.difference, what)
             if verdict != "fail":
                 lacking, why = _known(reference, i, head.target)
-                verdict, reason = verdict if lacking == "pass" else lacking, _join(reason, why)
+                verdict, reason = verdict if lacking in AGREES else lacking, _join(reason, why)
             cell = replace(cell, verdict=verdict, reason=reason)
         cells.append(cell)
     return cells, levels
@@ -304,7 +317,10 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
     return "" if motion in motions else f"this code declares that its modes have no {motion} motion"
 
 
-def _judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: str) -> Cell:
+def _judged(
+    cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: str, declared_order: float = 0.0
+) -> Cell:
+    """The cell with numbers and verdict; a pass states an order of convergence below the declared one."""
     base, best = reference.core.modes[i].estimate, mine.estimate
     if base is None or best is None:
         return cell
@@ -315,8 +331,9 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: s
         verdict, reason = bracketed(difference, uncertainty, cell.target)
     else:
         verdict, reason = judge(difference, uncertainty, cell.target)
-    if verdict == "pass":
+    if verdict in AGREES:
         verdict, reason = _unless_ambiguous(_known(reference, i, cell.target), mine.partner)
+        reason = _join(reason, best.note if best.order is not None and best.order < declared_order else "", late)
     else:
         reason = _join(reason, best.note, base.note and f"core: {base.note}", late)
     return replace(
@@ -333,7 +350,7 @@ def _judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: s
 
 def _unless_ambiguous(judged: Judgement, partner: Pair) -> Judgement:
     """No agreement if the code has another mode of nearly the same shape at a different frequency."""
-    return ("inconclusive", "") if partner.ambiguous and judged[0] in ("pass", "known difference") else judged
+    return ("inconclusive", "") if partner.ambiguous and judged[0] in (*AGREES, "known difference") else judged
 
 
 def _join(*parts: str) -> str:

@@ -22,6 +22,7 @@ from ..input.schema import Case, Discretisation, Variant
 from ..judge.results import Cell, Level, Verdict
 from . import core_solver, paper
 from .cells import Head, empty, failed, given, refined, rounding, same
+from .copies import copied
 from .published_tables import about, rows
 from .reference import Reference, felt
 from .refinement import Refining, Wanted, solve
@@ -146,7 +147,7 @@ def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column
             partial(_same, head, name, blade, code.levels[-1], code.effects, limits),
         )
     refining = Refining(code.levels, code.order, code.finest or 8 * code.levels[-1], bracket=code.bracket)
-    return Column(code.name, effects, head, partial(_refined, head, name, blade, refining, limits))
+    return Column(code.name, effects, head, partial(_refined, head, name, blade, effects, refining, limits))
 
 
 def _origin(code: Description, blade: Blade) -> Independence | None:
@@ -179,16 +180,23 @@ def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows
     return [empty(head, omega, verdict, reason) for omega, _ in core], []
 
 
-def _refined(head: Head, name: str, blade: Blade, refining: Refining, limits: Limits, core: References) -> Rows:
+def _refined(
+    head: Head, name: str, blade: Blade, effects: Effects, refining: Refining, limits: Limits, core: References
+) -> Rows:
     def ask(runs: Sequence[Asked]) -> list[Answer]:
         return answers(name, blade, runs, limits, head.version)
 
     count = max(r.core.count for _, r in core)
     refinements = solve(ask, [omega for omega, _ in core], refining, count, _wanted(core))
-    return _join(
+    cells, levels = _join(
         refined(head, omega, r, s, refining.order, refining.bracket)
         for (omega, r), s in zip(core, refinements, strict=True)
     )
+    first = [(omega, r, s.answers[0]) for (omega, r), s in zip(core, refinements, strict=True) if s.answers]
+    if head.shares in ("nothing", "undeclared") and (copy := copied(blade, effects, first)):
+        why = f"equals core's answers with {copy[0]} elements to {copy[1]:.0e}: core's discretisation, not independent"
+        cells = [replace(c, shares="discretisation", reason="; ".join(filter(None, (why, c.reason)))) for c in cells]
+    return cells, levels
 
 
 def _source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:

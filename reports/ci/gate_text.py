@@ -1,9 +1,9 @@
 """The result of a gate as text and tables: for the terminal, as Markdown, and as GitHub annotations.
 
-Frequencies and speeds are in rad/s, with enough digits to show a change of 1e-9.
+Speeds and frequencies are in the units of the case, with enough digits to show a change of 1e-9.
 """
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 
@@ -17,11 +17,17 @@ from ...cases.input.toml import document
 from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone
 from ...cases.regression.history import Detection, Entry, Point
 from ..shared.markdown import plain, table
+from ..shared.units import RAD_S, Units
 
 ROWS = 50
 """Largest number of rows of a table in Markdown; a job's summary has a size limit."""
 
+SHOWN = 10
+"""Largest number of rows of a table in the terminal."""
+
 Row = dict[str, str]
+ByCase = Mapping[str, Units]
+"""Units by case; rad/s for cases that are not in it."""
 
 
 def verdict(found: Comparison, strict: bool) -> str:
@@ -30,7 +36,7 @@ def verdict(found: Comparison, strict: bool) -> str:
         "worse": len(found.worse),
         "with a wider target": len(found.loosened),
         "gone": len(found.gone),
-        "controls no longer detected": len(found.undetected),
+        "seeded faults no longer detected": len(found.undetected),
         "seeded faults missed": len(found.missed),
         "moved": len(found.moved),
         "better": len(found.better),
@@ -46,53 +52,58 @@ def _named(entry: Entry) -> str:
     return f"{entry.commit} ({entry.date})" if entry.date else entry.commit
 
 
-def sections(found: Comparison) -> list[tuple[str, list[Row]]]:
+def sections(found: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
     """Title and rows of each non-empty table; those that can fail the gate come first."""
     every = [
-        ("Worse", [_change(c) for c in found.worse]),
-        ("Wider target than before", [_loosened(c) for c in found.loosened]),
-        ("Gone", _gone(found.gone)),
-        ("Seeded faults that are no longer detected", [_undetected(c) for c in found.undetected]),
+        ("Worse", [_change(c, units) for c in found.worse]),
+        ("Wider target than before", [_loosened(c, units) for c in found.loosened]),
+        ("Gone", _gone(found.gone, units)),
+        ("Seeded faults that are no longer detected, or not tried", [_undetected(c, units) for c in found.undetected]),
         ("Required seeded faults that are not detected", [{"fault": name} for name in found.missed]),
-        ("Moved", [_change(c) for c in found.moved]),
-        ("Better", [_change(c) for c in found.better]),
+        ("Moved", [_change(c, units) for c in found.moved]),
+        ("Better", [_change(c, units) for c in found.better]),
         ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in found.versions.items()]),
     ]
     return [(title, rows) for title, rows in every if rows]
 
 
-def _place(point: Point) -> Row:
+def _place(point: Point, units: ByCase) -> Row:
     family = f" ({point.family})" if point.family else ""
     mode = f"{point.mode}{family}" if point.mode else "none"
-    return {"case": point.case, "code": point.code, "speed, rad/s": f"{point.omega:.6g}", "mode": mode}
+    return {"case": point.case, "code": point.code, "speed": _units(point.case, units).at(point.omega), "mode": mode}
 
 
-def _loosened(change: Change) -> Row:
+def _units(case: str, units: ByCase) -> Units:
+    return units.get(case, RAD_S)
+
+
+def _loosened(change: Change, units: ByCase) -> Row:
     was = change.before.target if change.before else None
     targets = [f"{100 * t:.3g} %" if t else "" for t in (was, change.after.target)]
-    return _place(change.after) | {
+    return _place(change.after, units) | {
         "target before": targets[0],
         "target now": targets[1],
         "verdict": change.after.verdict,
     }
 
 
-def _change(change: Change) -> Row:
+def _change(change: Change, units: ByCase) -> Row:
     before, after = change.before, change.after
     was = before.verdict if before else "not there"
-    return _place(after) | {
-        "from, rad/s": _digits(before.frequency if before else None),
-        "to, rad/s": _digits(after.frequency),
+    of_case = _units(after.case, units)
+    return _place(after, units) | {
+        "from": _digits(before.frequency if before else None, of_case),
+        "to": _digits(after.frequency, of_case),
         "change": "" if change.moved is None else f"{change.moved:+.1e}",
         "verdict": after.verdict if was == after.verdict else f"{was} → {after.verdict}",
     }
 
 
-def _digits(frequency: float | None) -> str:
-    return "none" if frequency is None else f"{frequency:.12g}"
+def _digits(frequency: float | None, units: Units) -> str:
+    return "none" if frequency is None else f"{frequency * units.frequencies:.12g} {units.frequency}"
 
 
-def _gone(gone: Iterable[Gone]) -> list[Row]:
+def _gone(gone: Iterable[Gone], units: ByCase) -> list[Row]:
     """One row per case and code, with the missing speeds and modes."""
     rows = []
     for (case, code), group in groupby(sorted(gone, key=_column), key=_column):
@@ -103,7 +114,7 @@ def _gone(gone: Iterable[Gone]) -> list[Row]:
                 "case": case,
                 "code": code,
                 "answers": str(len(members)),
-                "speeds, rad/s": ", ".join(f"{w:.6g}" for w in sorted({g.point.omega for g in members})),
+                "speeds": ", ".join(_units(case, units).at(w) for w in sorted({g.point.omega for g in members})),
                 "modes": ", ".join(str(k) for k in sorted({g.point.mode for g in members})),
                 "now": ", ".join(instead),
             }
@@ -115,37 +126,39 @@ def _column(gone: Gone) -> tuple[str, str]:
     return gone.point.case, gone.point.code
 
 
-def _undetected(control: Detection) -> Row:
+def _undetected(control: Detection, units: ByCase) -> Row:
     return {
         "fault": control.control,
         "case": control.case,
-        "speed, rad/s": f"{control.omega:.6g}",
+        "speed": _units(control.case, units).at(control.omega),
         "was detected by": ", ".join(control.detected_by),
     }
 
 
-def tables(found: Comparison) -> Iterator[RenderableType]:
-    """All tables, for the terminal or a log."""
-    for title, rows in sections(found):
+def tables(found: Comparison, units: ByCase) -> Iterator[RenderableType]:
+    """All tables, for the terminal or a log, each cut after ``SHOWN`` rows with the number of further ones."""
+    for title, rows in sections(found, units):
+        if len(rows) > SHOWN:
+            title += f": the first {SHOWN} of {len(rows)}"
         shown = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
         for head in rows[0]:
             shown.add_column(head, overflow="fold")
-        for row in rows:
+        for row in rows[:SHOWN]:
             shown.add_row(*map(escape, row.values()))
         yield shown
 
 
-def markdown(found: Comparison, strict: bool) -> str:
+def markdown(found: Comparison, strict: bool, units: ByCase) -> str:
     """Verdict and tables as Markdown for a job's summary; tables longer than ``ROWS`` are cut, with a note."""
     blocks = [f"**{plain(verdict(found, strict))}**"]
-    for title, rows in sections(found):
+    for title, rows in sections(found, units):
         shown = [{head: plain(value) for head, value in row.items()} for row in rows[:ROWS]]
         cut = f"\n\n… and {len(rows) - ROWS} more: see the log." if len(rows) > ROWS else ""
         blocks.append(f"#### {title}\n\n{table(shown)}{cut}")
     return "\n\n".join(blocks) + "\n"
 
 
-def annotations(found: Comparison, folder: Path) -> list[str]:
+def annotations(found: Comparison, folder: Path, units: ByCase) -> list[str]:
     """GitHub workflow commands for the files of cases.
 
     An error for each case and code that got worse, a warning for each that still fails; one each, because GitHub shows
@@ -154,22 +167,25 @@ def annotations(found: Comparison, folder: Path) -> list[str]:
     files = case_files(folder)
     worse = {c.after.key for c in found.worse}
     standing = [p for p in found.after.cells if RANK.get(p.verdict, 0) >= MISS and p.key not in worse]
-    rows = [("error", p.case, text) for p, text in _by_column([(c.after, _became(c)) for c in found.worse])]
+    rows = [
+        ("error", p.case, text) for p, text in _by_column([(c.after, _became(c, units)) for c in found.worse], units)
+    ]
     rows += [
-        ("error", r["case"], f"{r['code']}: {r['answers']} answers missing, now {r['now']}") for r in _gone(found.gone)
+        ("error", r["case"], f"{r['code']}: {r['answers']} answers missing, now {r['now']}")
+        for r in _gone(found.gone, units)
     ]
     for control, case in dict.fromkeys((c.control, c.case) for c in found.undetected):
-        rows.append(("error", case, f"{control}: a fault in core that is no longer detected"))
-    rows += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing])]
+        rows.append(("error", case, f"{control}: a seeded fault that is no longer detected, or not tried"))
+    rows += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing], units)]
     return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in rows]
 
 
-def _became(change: Change) -> str:
+def _became(change: Change, units: ByCase) -> str:
     was = change.before.verdict if change.before else "not there"
-    return f"{was} → {change.after.verdict}, {_digits(change.after.frequency)} rad/s"
+    return f"{was} → {change.after.verdict}, {_digits(change.after.frequency, _units(change.after.case, units))}"
 
 
-def _by_column(points: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
+def _by_column(points: Sequence[tuple[Point, str]], units: ByCase) -> list[tuple[Point, str]]:
     """The first point of each case and code, and the number of further ones."""
     groups: dict[tuple[str, str], list[tuple[Point, str]]] = {}
     for point, text in points:
@@ -177,7 +193,9 @@ def _by_column(points: Sequence[tuple[Point, str]]) -> list[tuple[Point, str]]:
     out = []
     for (point, text), *rest in groups.values():
         more = f"; and {len(rest)} more" if rest else ""
-        out.append((point, f"{point.code}: mode {point.mode} at {point.omega:.6g} rad/s: {text}{more}"))
+        out.append(
+            (point, f"{point.code}: mode {point.mode}, {_units(point.case, units).at(point.omega)}: {text}{more}")
+        )
     return out
 
 

@@ -13,7 +13,7 @@ from ...cases.input import atomic
 from ...cases.input.errors import CaseError, nearest
 from ...cases.judge.results import Run
 from ...cases.regression import history
-from ...cases.regression.gate import MOVED, Comparison, compare, nothing, within
+from ...cases.regression.gate import MOVED, Comparison, compare, misses, nothing, within
 from ...cases.regression.history import Entry
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..ci import gate_text, junit
@@ -21,6 +21,7 @@ from ..shared.console import output
 from ..shared.log_safe import commands
 from ..shared.statuses import FAILED, INCOMPLETE, PASSED
 from ..shared.summary import incomplete
+from ..shared.units import BY_KEY, Units
 from ..shared.writing import writable
 from ..verification import report as matrix_report
 from .arguments import RESULTS, finished, found
@@ -35,6 +36,7 @@ def command(
     commit: str = "",
     strict: bool = False,
     partial: bool = False,
+    failed_baseline: bool = False,
     tolerance: Annotated[float, Parameter(validator=Number(gte=0))] = MOVED,
     junit_file: Annotated[Path | None, Parameter(name="--junit")] = None,
     summary: Path | None = None,
@@ -42,8 +44,8 @@ def command(
 ) -> int:
     """Compare a run with an earlier one; status 1 if anything got worse.
 
-    Worse means a worse verdict, a missing answer, or a seeded fault that is no longer detected. Changed frequencies are listed.
-    An incomplete run does not pass: status 3.
+    Worse means a worse verdict, a missing answer, or a seeded fault that is no longer detected or not tried. Changed
+    frequencies are listed. An incomplete run does not pass: status 3.
 
     Parameters
     ----------
@@ -57,7 +59,9 @@ def command(
     strict
         Status 1 also if a frequency changed.
     partial
-        The run has only some of the cases; compare only these.
+        The run has only some of the cases or seeded faults; compare only these.
+    failed_baseline
+        Accept an earlier run with failures: they then do not count again.
     tolerance
         Largest relative change of a frequency that does not count as a change.
     junit_file
@@ -74,23 +78,29 @@ def command(
     before = _before(against, commit) if against else nothing(after)
     if partial:
         before = within(before, after)
+    if (count := misses(before)) and not failed_baseline:
+        raise CaseError(
+            f"--against {against}: the run {before.commit} has {count} failure{'s' * (count > 1)}: compare with a run that "
+            "passed, or accept them by --failed-baseline"
+        )
+    units = {s.case: BY_KEY[s.unit] for s in run.settings}
     missed = [c.control for c in run.controls if c.missed]
     gate = compare(before, after, tolerance, missed)
     console = output()
     if message := incomplete(run):
         console.print(message, markup=False, soft_wrap=True)
-    for shown in gate_text.tables(gate):
-        console.print(shown)
     console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)
+    for shown in gate_text.tables(gate, units):
+        console.print(shown)
     if annotations:
-        for line in gate_text.annotations(gate, Path()):
+        for line in gate_text.annotations(gate, Path(), units):
             print(line, file=commands())
     if junit_file:
         with writable(f"--junit {junit_file}", "file"):
             atomic.write(junit_file, junit.render(run, gate, strict))
     if summary:
         with writable(f"--summary {summary}", "file"), summary.open("a", encoding="utf-8") as file:
-            file.write(_page(run, gate, strict))
+            file.write(_page(run, gate, strict, units))
     if run.unfinished:
         return INCOMPLETE
     return PASSED if gate.passed(strict) else FAILED
@@ -122,12 +132,12 @@ def _is_run(path: Path) -> bool:
     return isinstance(first, dict) and "kind" in first
 
 
-def _page(run: Run, gate: Comparison, strict: bool) -> str:
+def _page(run: Run, gate: Comparison, strict: bool, units: dict[str, Units]) -> str:
     """The page with the headline of the run and the findings of the gate."""
     parts = [
         "### Southwell",
         *matrix_report.marked(run, matrix_report.headline(run)),
-        gate_text.markdown(gate, strict),
+        gate_text.markdown(gate, strict, units),
         matrix_report.heat(run),
     ]
     return "\n\n".join(parts) + "\n"

@@ -17,6 +17,7 @@ SYMBOL: dict[Verdict, str] = {
     "fail": "✘",
     "inconclusive": "?",
     "known difference": "≈",
+    "coarse": "□",
     "estimate": "~",
     "measured": "◇",
     "not applicable": "–",
@@ -29,6 +30,7 @@ WORST_FIRST: tuple[Verdict, ...] = (
     "inconclusive",
     "known difference",
     "pass",
+    "coarse",
     "estimate",
     "measured",
     "not run",
@@ -41,14 +43,23 @@ PAPER = 1e-3
 TINY = 1e-6
 """Targets below this are those of codes with the same discretisation; such differences are not shown in percent."""
 
+LARGEST_KNOWN = 0.05
+"""Largest known difference, relative, of an answer that still counts as compared with core."""
+
 BAD: frozenset[Verdict] = frozenset({"fail", "inconclusive"})
 """Verdicts that make a run end with status 1."""
 
 
 def compared(cells: Iterable[Cell]) -> bool:
-    """Whether an external result was compared with core: a judged number, or a required answer that is missing."""
-    foreign = (c for c in cells if c.role != "discretisation" and c.shares != "everything")
-    return any(c.verdict in (*BAD, "pass", "known difference") for c in foreign)
+    """Whether an external result was compared with core: a judged number, or a required answer that is missing.
+
+    A known difference above ``LARGEST_KNOWN`` does not count: what the code leaves out decides its answer.
+    """
+    foreign = [c for c in cells if c.role != "discretisation" and c.shares != "everything"]
+    explained = (c for c in foreign if c.verdict == "known difference")
+    return any(c.verdict in (*BAD, "pass") for c in foreign) or any(
+        abs(size(c) or 0.0) <= LARGEST_KNOWN for c in explained
+    )
 
 
 def incomplete(run: Run) -> str:

@@ -26,7 +26,7 @@ The third and fourth kinds check the answer, the fifth only the implementation.
 URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
 """Verdicts reported first, worst first."""
 
-SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass")
+SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass", "coarse")
 """Verdicts on a difference from core with the same effects, worst first."""
 
 
@@ -74,12 +74,7 @@ def first(run: Run) -> list[str]:
 
     If there are none, the second line is the independent answer that is farthest from core relative to its target.
     """
-    independent = {
-        (case, w.name)
-        for case in summary.cases(run)
-        for w in witnesses(run, case)
-        if w.kind in (*INDEPENDENT, "coarse source")
-    }
+    independent = {(case, w.name) for case in summary.cases(run) for w in witnesses(run, case) if w.kind in INDEPENDENT}
     far = farthest(c for c in run.cells if (c.case, c.code) in independent)
     data = [line for line in (measured(run),) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):

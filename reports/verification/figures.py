@@ -153,6 +153,7 @@ def _data(axes: Axes, cells: Sequence[Cell], units: Units) -> list[Line2D]:
 FACES: dict[Verdict, str] = {
     "pass": "full",
     "known difference": "left",
+    "coarse": "bottom",
     "estimate": "bottom",
     "inconclusive": "none",
     "fail": "full",

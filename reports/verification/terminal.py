@@ -19,6 +19,7 @@ from . import witnesses
 COLOUR: dict[Verdict, str] = {
     "pass": "green",
     "known difference": "cyan",
+    "coarse": "dim",
     "estimate": "dim",
     "measured": "magenta",
     "inconclusive": "yellow",

@@ -1,5 +1,6 @@
 """Codes that do wrong in ways that once were not judged as failures."""
 
+import os
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 
@@ -8,7 +9,8 @@ import numpy as np
 from southwell.core.blade import Blade
 from southwell.core.effects import Effects
 from southwell.core.modes import Modes
-from southwell.references.protocol.interface import BladeAdapter
+from southwell.core.solve import mesh_modes
+from southwell.references.protocol.interface import BladeAdapter, Independence
 from southwell.references.theories.exact_beam import CODE as EXACT
 
 
@@ -59,6 +61,50 @@ def _extra(modes: Modes) -> Modes:
     return replace(modes, frequencies=frequencies, shapes=shapes)
 
 
+def _first_order(modes: Modes, error: float = 2e-3) -> Modes:
+    """With an error that is inversely proportional to the number of elements."""
+    return replace(modes, frequencies=modes.frequencies * (1.0 + error / modes.elements))
+
+
+@dataclass(frozen=True)
+class Deaf(Fooling):
+    """Says that it refines, and solves the same mesh."""
+
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        return replace(super().modes(blade, omega, 10, count), elements=elements)
+
+
+@dataclass(frozen=True)
+class Fragile(Fooling):
+    """Crashes with more than the third of its meshes."""
+
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        if elements > self.levels[2]:
+            os.abort()
+        return super().modes(blade, omega, elements, count)
+
+
+INVENTED = Independence("Beamer 3", "Rossi (2001)", "Rossi (2001), eq. 7")
+
+
+@dataclass(frozen=True)
+class Copy(Fooling):
+    """Core's own solver, with an origin of its own."""
+
+    independence: Independence | None = INVENTED
+
+    def unsupported(self, blade: Blade) -> str | None:
+        return None
+
+    def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
+        return mesh_modes(blade, omega, elements, count)
+
+
+FAR = Fooling("far", lambda m: replace(m, frequencies=1.4 * m.frequencies), levels=(8, 16, 32), order=4)
+DEAF = Deaf("deaf", lambda m: replace(m, frequencies=1.0009 * m.frequencies), levels=(8, 16, 32), order=4)
+CRUDE = Fooling("crude", _first_order, levels=(8, 16, 32), order=4)
+FRAGILE = Fragile("fragile", lambda m: _first_order(m, 0.5), levels=(8, 16, 32), order=1)
+COPY = Copy("copy", levels=(8, 16, 32), order=4)
 LOST = Fooling("lost", _without_flap)
 EXTRA = Fooling("extra", _extra)
 DAMPED = Fooling("damped", lambda m: replace(m, damping=np.where(np.arange(len(m.frequencies)) == 2, 0.03, 0.0)))

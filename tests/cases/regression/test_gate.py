@@ -6,7 +6,9 @@ from dataclasses import replace
 from pathlib import Path
 from xml.etree import ElementTree
 
+import numpy as np
 import pytest
+from rich.table import Table
 
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
@@ -15,6 +17,7 @@ from southwell.cases.regression.gate import compare
 from southwell.cases.store import codec
 from southwell.cases.store.unfinished import Unfinished
 from southwell.reports.ci import gate_text, junit
+from southwell.reports.shared.units import BY_KEY
 
 from ...reports.cli.test_cli import southwell
 from .test_history import CELL, RUN
@@ -46,7 +49,7 @@ def test_a_frequency_moved_is_listed_and_counts_if_asked_for(change: float, list
     assert found.passed(strict=True) is not listed
 
 
-VERDICTS = ("pass", "known difference", "estimate", "inconclusive", "fail")
+VERDICTS = ("pass", "coarse", "known difference", "estimate", "inconclusive", "fail")
 
 
 @pytest.mark.parametrize("before", VERDICTS)
@@ -106,16 +109,20 @@ def test_a_wider_target_counts_and_a_narrower_one_does_not() -> None:
     assert [(c.after.mode, c.after.target) for c in found.loosened] == [(1, 2e-3)]
     assert not found.passed()
     assert "1 with a wider target" in gate_text.verdict(found, strict=False)
-    assert any(title.startswith("Wider target") for title, _ in gate_text.sections(found))
+    assert any(title.startswith("Wider target") for title, _ in gate_text.sections(found, {}))
     assert compared(BEFORE, wide).passed()
 
 
-def test_faults_that_only_a_longer_run_tries_are_not_missed_in_a_shorter_one() -> None:
+def test_every_fault_of_the_baseline_is_required_unless_the_run_is_partial() -> None:
+    """One fault run instead of seven once passed, even with --strict."""
     (control,) = BEFORE.controls
     longer = replace(BEFORE, controls=(control, replace(control, control="one more")))
-    assert compared(BEFORE, longer).passed()
     absent = replace(control, control="one more", detected_by=(), needs="some-code")
-    assert compared(replace(BEFORE, controls=(control, absent)), longer).passed()
+    for after in (BEFORE, replace(BEFORE, controls=(control, absent))):
+        assert [c.control for c in compared(after, longer).undetected] == ["one more"]
+        assert not compared(after, longer).passed()
+        now = history.entry(after, "after", "m")
+        assert compare(gate.within(history.entry(longer, "before", "m"), now), now).passed()
 
 
 HOSTILE = "50 %: a|b, <c> & \x00d\n::error::e"
@@ -162,13 +169,13 @@ def test_annotations_name_the_case_s_file_and_are_escaped(tmp_path: Path) -> Non
     (tmp_path / ".hidden").mkdir()
     (tmp_path / ".hidden" / "x.toml").write_text('name = "beam"\n')
     (tmp_path / "broken.toml").write_text("name = \n")
-    lines = gate_text.annotations(compared(BAD), tmp_path)
-    assert lines[0].startswith("::error file=some/a%2Cb.toml,title=beam::some-code: mode 1 at 10 rad/s: pass → fail")
+    lines = gate_text.annotations(compared(BAD), tmp_path, {})
+    assert lines[0].startswith("::error file=some/a%2Cb.toml,title=beam::some-code: mode 1, 10 rad/s: pass → fail")
     assert [line.split(" ")[0] for line in lines] == ["::error"] * len(lines)
     assert all("\n" not in line for line in lines)
     assert sum("answers missing" in line for line in lines) == 2
     assert sum("no longer detected" in line for line in lines) == 1
-    old = gate_text.annotations(compared(BAD, BAD), tmp_path)
+    old = gate_text.annotations(compared(BAD, BAD), tmp_path, {})
     assert [line.split(" ")[0] for line in old] == ["::warning"] * 2  # misses, but old ones
 
 
@@ -176,7 +183,7 @@ def test_a_summary_s_tables_are_cut_and_say_so() -> None:
     many = tuple(replace(CELL, mode=k, frequency=float(k)) for k in range(1, 72))
     after = tuple(replace(c, frequency=(c.frequency or 0.0) * (1 + 1e-6)) for c in many)
     found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
-    shown = gate_text.markdown(found, strict=False)
+    shown = gate_text.markdown(found, False, {})
     assert "✔ gate passed: 71 cells" in shown
     assert "… and 21 more" in shown
     assert shown.count("+1.0e-06") == 50
@@ -205,14 +212,14 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
     [
         ("{0}/before --against {0}/before", 0, "✔ gate passed: 6 cells against .*before: nothing moved"),
         ("{0}/before --against {0}/before/results.jsonl", 0, "nothing moved"),
-        ("{0}/after --against {0}/before", 1, "✘ gate failed: 3 cells .*: 2 worse, 4 gone, 1 controls no longer"),
-        ("{0}/after --against {0}/history.jsonl", 0, "against bad2"),
+        ("{0}/after --against {0}/before", 1, "✘ gate failed: 3 cells .*: 2 worse, 4 gone, 1 seeded faults no longer"),
+        ("{0}/after --against {0}/history.jsonl --failed-baseline", 0, "against bad2"),
         ("{0}/after", 1, "3 cells against nothing: 2 worse, 3 new"),
         ("{0}/before", 0, "✔ gate passed: 6 cells against nothing: 6 new"),
         ("{0}/one.jsonl --against {0}/two.jsonl", 1, "3 cells .*: 3 gone"),
         ("{0}/one.jsonl --against {0}/two.jsonl --partial", 0, "nothing moved"),
         ("{0}/after --against {0}/history.jsonl --commit goo", 1, "against good1"),
-        ("{0}/moved.jsonl --against {0}/before", 0, r"20 +20.1 +\+5.0e-03"),
+        ("{0}/moved.jsonl --against {0}/before", 0, r"20 rad.s +20.1 rad.s +\+5.0e-03"),
         ("{0}/moved.jsonl --against {0}/before --strict", 1, "✘ gate failed: 6 cells .*: 1 moved"),
         ("{0}/moved.jsonl --against {0}/before --strict --tolerance 0.01", 0, "nothing moved"),
     ],
@@ -221,6 +228,25 @@ def test_the_command(folders, capsys: pytest.CaptureFixture[str], line: str, exp
     status, out, err = southwell(f"gate {folders(line)}", capsys)
     assert (status, err) == (expected, "")
     assert re.search(phrase, out)
+
+
+def test_a_failed_baseline_is_refused_unless_it_is_accepted(folders, capsys: pytest.CaptureFixture[str]) -> None:
+    """Compared with a run that failed, every failure is as before."""
+    status, out, err = southwell(f"gate {folders('{0}/after --against {0}/after')}", capsys)
+    assert (status, out) == (2, "")
+    assert "has 2 failures" in err
+    assert "--failed-baseline" in err
+
+
+def test_the_verdict_comes_first_and_tables_are_short_and_in_the_units_of_the_case() -> None:
+    many = tuple(replace(CELL, mode=k, omega=np.pi, frequency=2.0 * np.pi * k) for k in range(1, 72))
+    after = tuple(replace(c, frequency=(c.frequency or 0.0) * (1 + 1e-3)) for c in many)
+    found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
+    (table,) = gate_text.tables(found, {CELL.case: BY_KEY["rpm"]})
+    assert isinstance(table, Table)
+    assert table.row_count == 10
+    assert "the first 10 of 71" in str(table.title)
+    assert [next(iter(c.cells)) for c in table.columns[2:6]] == ["30 rpm", "1 (edgewise)", "1 Hz", "1.001 Hz"]
 
 
 def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monkeypatch) -> None:

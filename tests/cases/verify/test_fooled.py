@@ -9,12 +9,14 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from msgspec import structs
 
 from southwell.cases.faults import seeding
 from southwell.cases.faults.table import BY_NAME
 from southwell.cases.input import library
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.judge.verdict import bracketed, discretised, judge
+from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.verify import core_solver, matrix
 from southwell.cases.verify.cells import rounding
 from southwell.core.element.discretize import Mass
@@ -114,6 +116,63 @@ def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
     assert evidence.answer(Run(tuple(cells))).startswith("Nothing was compared.")
 
 
+def test_a_wide_target_is_coarse_and_no_evidence() -> None:
+    """40 % away from core with a target of 50 % once was a pass, and counted as a group."""
+    case = library.load(PARK)
+    compare = structs.replace(case.text.compare, target=0.5)
+    wide = replace(
+        case,
+        text=structs.replace(case.text, compare=compare),
+        variants=(replace(case.variants[0], speeds=np.array([10.0])),),
+    )
+    with ThreadPoolExecutor(1) as executor:
+        found = matrix.run([wide], ["southwell.tests.support.fooling:FAR"], executor, parts=False)
+    cells = [c for c in found.cells if c.code == "far"]
+    assert {c.verdict for c in cells} == {"coarse"}
+    assert all(abs(c.difference or 0.0) > 0.3 for c in cells)
+    (witness,) = [w for w in witnesses(found, PARK) if w.name == "far"]
+    assert witness.standing == "coarse"
+    assert not groups([witness])
+    assert not summary.compared(cells)
+
+
+def test_a_code_that_ignores_elements_is_inconclusive() -> None:
+    """The same digits on three meshes 0.09 % off once were a pass with an uncertainty of 2e-9."""
+    cells = of("deaf")
+    assert {c.verdict for c in cells} == {"inconclusive"}
+    assert all("identical: not refined" in c.reason for c in cells)
+
+
+def test_an_order_that_is_not_the_declared_one_is_stated_with_a_pass() -> None:
+    cells = [c for c in of("crude") if c.verdict == "pass"]
+    assert cells
+    assert all("observed order 1.0" in c.reason and "instead of 4" in c.reason for c in cells)
+
+
+def test_a_crash_of_a_finer_refinement_is_stated_with_a_pass() -> None:
+    cells = [c for c in of("fragile") if c.verdict == "pass"]
+    assert cells
+    assert all("finer: " in c.reason and "SIGABRT" in c.reason for c in cells)
+
+
+def test_a_copy_of_core_is_recognised_by_its_digits() -> None:
+    """With invented origins it once was an independent group."""
+    found = run("COPY")
+    cells = [c for c in found.cells if c.code == "copy"]
+    assert {c.shares for c in cells} == {"discretisation"}
+    assert all("core's discretisation, not independent" in c.reason for c in cells)
+    (witness,) = [w for w in witnesses(found, PARK) if w.name == "copy"]
+    assert witness.kind == "core's model"
+
+
+def test_a_large_known_difference_is_no_comparison() -> None:
+    """A code without geometric stiffness is 71 % off, and declares it."""
+    cell = samples.cell(verdict="known difference", difference=-1e-5, frequency=3.4, reference=3.4, full=11.7)
+    assert abs(summary.size(cell) or 0.0) > 0.7
+    assert summary.status(Run((cell,))) == 1
+    assert summary.status(Run((replace(cell, full=3.42),))) == 0
+
+
 @pytest.mark.slow
 def test_a_mode_that_the_code_has_twice_is_no_agreement() -> None:
     """One at the right frequency, and one of nearly the same shape 30 % above it: which is its answer?"""
@@ -193,9 +252,9 @@ def test_rounding_of_a_blade_that_cannot_stretch_is_measured() -> None:
 
 
 sizes = st.floats(0.0, 1.0)
-RANK = {"pass": 0, "known difference": 1, "estimate": 2, "inconclusive": 2, "fail": 2}
+RANK = {"pass": 0, "coarse": 1, "known difference": 1, "estimate": 2, "inconclusive": 2, "fail": 2}
 """As evidence: what neither agrees nor is explained is none."""
-FULL_RANK = {"pass": 0, "inconclusive": 1, "fail": 2}
+FULL_RANK = {"pass": 0, "coarse": 0, "inconclusive": 1, "fail": 2}
 
 
 @settings(derandomize=True)

@@ -87,8 +87,10 @@ def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path)
     run = samples.run()
     rough = replace(run.cells[0], code="rough", verdict="estimate", reason="its own bracket")
     datum = replace(run.cells[0], code="rig", role="measured", verdict="measured", reason="model error not visible")
+    wide = replace(run.cells[0], code="table", verdict="coarse", reason="a wide target")
     text = html.render(
-        matrix_report.write(replace(run, cells=(*run.cells, rough, datum)), folder).read_text(encoding="utf-8"), folder
+        matrix_report.write(replace(run, cells=(*run.cells, wide, rough, datum)), folder).read_text(encoding="utf-8"),
+        folder,
     )
     for verdict, sign in summary.SYMBOL.items():
         name = verdict.replace(" ", "-")

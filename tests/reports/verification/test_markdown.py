@@ -132,7 +132,7 @@ def test_the_heat_table_has_a_sign_and_a_word_for_every_case_and_code(report: st
     assert rows[0][1].startswith("✔ pass")
     assert rows[0][3] == "≈ known 0.250 %"
     assert rows[1][1:] == ["✘ fail 0.500 %", "? inconclusive 0.0500 %", "– n/a"]
-    assert "≈ known difference (known), ~ estimate, ◇ measured, – not applicable (n/a)" in report
+    assert "≈ known difference (known), □ coarse, ~ estimate, ◇ measured, – not applicable (n/a)" in report
 
 
 def test_a_code_without_any_answer_has_no_column_but_its_name_and_reason(report: str) -> None:

@@ -1,0 +1,57 @@
+"""Recognises core's own discretisation in the answers of a code that declares that it shares nothing with core.
+
+Two independent programs with as many elements differ by their discretisation errors. Answers that equal core's to rounding,
+where core itself is not converged, come from core's equations, whatever the code declares.
+"""
+
+from collections.abc import Sequence
+from typing import get_args
+
+import numpy as np
+
+from ...core.blade import Blade
+from ...core.effects import Effects
+from ...core.element.discretize import Mass
+from ...core.element.measures import Measure
+from ...core.modes import Modes
+from . import core_solver
+from .reference import Reference
+
+DIGITS = 1e-10
+"""Relative difference up to which two answers are equal."""
+
+UNCONVERGED = 1e-7
+"""Smallest relative discretisation error of core at which equal answers are no coincidence."""
+
+
+def copied(
+    blade: Blade, effects: Effects, answers: Sequence[tuple[float, Reference, Modes]]
+) -> tuple[int, float] | None:
+    """The number of elements at which every answer equals core's, and the largest relative difference; None if they do not.
+
+    Args:
+        blade: the blade.
+        effects: effects that the code keeps.
+        answers: rotor speed in rad/s, core's reference and the code's answer with its fewest elements, at each speed.
+    """
+    for mass in get_args(Mass):
+        for stiffness in get_args(Measure):
+            differences = [_difference(blade, effects, mass, stiffness, *answer) for answer in answers]
+            if differences and all(d is not None and d <= DIGITS for d in differences):
+                return answers[0][2].elements, max(d or 0.0 for d in differences)
+    return None
+
+
+def _difference(
+    blade: Blade, effects: Effects, mass: Mass, stiffness: Measure, omega: float, reference: Reference, answer: Modes
+) -> float | None:
+    """Largest relative difference of the compared modes from core's with as many elements; None where core is converged."""
+    (mine,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
+    best = [m.estimate.value if m.estimate else np.nan for m in reference.core.modes]
+    indices = list(reference.core.wanted.indices)
+    if not isinstance(mine, Modes) or min(len(mine.frequencies), len(answer.frequencies)) <= max(indices):
+        return None
+    values, theirs = mine.frequencies[indices], answer.frequencies[indices]
+    if not np.nanmax(np.abs(values / best - 1.0), initial=0.0) > UNCONVERGED:
+        return None
+    return float(np.abs(theirs / values - 1.0).max())
