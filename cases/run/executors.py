@@ -125,7 +125,7 @@ def _begin(scratch: Path | None) -> None:
         os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
     signal.signal(signal.SIGINT, lambda *_: None)  # unlike SIG_IGN, not inherited by foreign codes
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    launch.keep()
+    launch.prepare()
     gc.set_threshold(OBJECTS)
     Thread(target=_end_with_parent, daemon=True).start()
 

@@ -1,4 +1,4 @@
-"""Start supervised processes: each is forked by a process of ``supervisor.py``, which may be kept for the next ones."""
+"""Start supervised processes: each is forked by one process of ``supervisor.py``, which is kept for the next ones."""
 
 import json
 import os
@@ -20,12 +20,10 @@ from .supervisor import REQUEST
 SUPERVISOR = Path(__file__).with_name("supervisor.py")
 
 WARM_IMPORTS = ("southwell.references.warm_imports",)
-"""What a kept or prepared process imports."""
+"""What the process that forks imports."""
 
-_keeping = False
 _starting = threading.Lock()
 _kept: "_Forker | None" = None
-_prepared: "deque[_Forker]" = deque()  # one at most
 
 
 @dataclass(frozen=True)
@@ -102,25 +100,27 @@ class Child:
         for stream in (self.stdin, self.stdout, self.stderr):
             stream.close()
         os.close(self._status)
-        if self._forker is not _kept:
-            self._forker.close()
 
 
-def keep() -> None:
-    """Keep the process that forks, from the next start on; for a process that starts many."""
-    global _keeping
-    _keeping = True
+def prepare() -> _Forker:
+    """Start the process that forks, unless it is running: it imports while the first request is prepared.
 
-
-def prepare() -> None:
-    """Start the process that forks for the next start: it imports while the request is prepared."""
-    if not _prepared:
-        _prepared.append(_forker(WARM_IMPORTS))
+    It is replaced if it was killed, or if the environment or the current folder has changed, where it looks for modules.
+    """
+    global _kept
+    with _starting:  # one for all threads
+        surroundings = _surroundings()
+        if _kept and (_kept.process.poll() is not None or _kept.surroundings != surroundings):
+            _kept.close()
+            _kept = None
+        if _kept is None:
+            _kept = _forker(surroundings)
+        return _kept
 
 
 def start(module: str, space: int) -> Child:
     """Start a process that calls ``main()`` of a module and has at most ``space`` bytes of address space."""
-    forker = _keep_one() or _take_prepared() or _forker((module,))
+    forker = prepare()
     pipes = [os.pipe() for _ in range(4)]
     theirs = [pipes[0][0], *(pipe[1] for pipe in pipes[1:])]
     mine = [pipes[0][1], *(pipe[0] for pipe in pipes[1:])]
@@ -136,42 +136,25 @@ def start(module: str, space: int) -> Child:
     return Child(stdin, stdout, stderr, mine[3], forker)
 
 
-def _keep_one() -> _Forker | None:
-    global _kept
-    with _starting:  # one for all threads
-        if _keeping and (_kept is None or _kept.process.poll() is not None):  # the first, or the last one was killed
-            _kept = _forker(WARM_IMPORTS)
-        return _kept
-
-
-def _take_prepared() -> _Forker | None:
-    with suppress(IndexError):  # another thread may take it
-        one = _prepared.pop()
-        if one.surroundings == _surroundings():
-            return one
-        one.close()  # it would look for modules elsewhere
-    return None
-
-
 def _surroundings() -> tuple[dict[str, str], str]:
     return dict(os.environ), os.getcwd()
 
 
-def _forker(modules: tuple[str, ...]) -> _Forker:
+def _forker(surroundings: tuple[dict[str, str], str]) -> _Forker:
     here, there = socket.socketpair()
     alone = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     nothing = subprocess.DEVNULL
     with there:
         process = subprocess.Popen(
-            [sys.executable, "-P", str(SUPERVISOR), str(there.fileno()), *modules],
+            [sys.executable, "-P", str(SUPERVISOR), str(there.fileno()), *WARM_IMPORTS],
             stdin=nothing,
             stdout=nothing,
             stderr=nothing,
             pass_fds=[there.fileno()],
-            env={**os.environ, **alone},
+            env={**surroundings[0], **alone},
             start_new_session=True,
         )
-    return _Forker(process, here, _surroundings())
+    return _Forker(process, here, surroundings)
 
 
 def descendants(pid: int) -> list[int]:

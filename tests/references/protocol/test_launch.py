@@ -1,4 +1,4 @@
-"""A process that is prepared serves one start, and a killed one costs that start only."""
+"""The process that forks serves every start; a killed one costs that start only, and one in other surroundings none."""
 
 from pathlib import Path
 
@@ -9,36 +9,26 @@ from southwell.references.protocol.description import describe
 from southwell.references.protocol.registry import UnknownCodeError
 
 
-@pytest.fixture(autouse=True)
-def prepared():
-    """One prepared process; none is left."""
-    launch.prepare()
-    (one,) = launch._prepared
-    yield one
-    launch._prepared.clear()
-    one.close()
-
-
-def test_it_serves_one_start(prepared: launch._Forker) -> None:
-    launch.prepare()
-    assert list(launch._prepared) == [prepared]
+def test_it_serves_every_start() -> None:
+    prepared = launch.prepare()
     for _ in range(2):
         (said,) = describe(["exact-beam"])
         assert said.failure is None
-        assert not launch._prepared
-        assert prepared.process.returncode is not None  # it ends with what it has started
+        assert launch.prepare() is prepared
+    assert prepared.process.poll() is None
 
 
-def test_without_it_the_code_is_asked_again(prepared: launch._Forker) -> None:
+def test_a_killed_one_is_replaced() -> None:
+    prepared = launch.prepare()
     prepared.process.kill()
     prepared.process.wait()
     (said,) = describe(["exact-beam"])
     assert said.failure is None
+    assert launch.prepare() is not prepared
 
 
-def test_it_does_not_serve_a_start_in_other_surroundings(
-    prepared: launch._Forker, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_it_does_not_serve_a_start_in_other_surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    prepared = launch.prepare()
     (tmp_path / "elsewhere.py").write_text("CODE = 1\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
     with pytest.raises(UnknownCodeError, match="not an adapter"):  # and not: no module named elsewhere
