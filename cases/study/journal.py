@@ -5,6 +5,7 @@ in the order in which tasks ended. Files are read line by line, so that memory d
 """
 
 from collections.abc import Iterator
+from contextlib import suppress
 from pathlib import Path
 from typing import BinaryIO
 
@@ -12,13 +13,16 @@ import msgspec
 import portalocker
 
 from ..input.errors import CaseError
-from .appending import Appending
 from .plan import Header
 from .rows import Row
 
 _header, _row = msgspec.json.Decoder(Header), msgspec.json.Decoder(Row)
 
 OTHER = "give another --out, or remove the file"
+
+
+class JournalError(OSError):
+    """Rows could not be written to disk; the study stops."""
 
 
 class StudyJournal:
@@ -40,10 +44,10 @@ class StudyJournal:
         if path.exists() and not path.is_file():
             raise CaseError(f"--out {path}: not a regular file: give another file")
         self.path, self.header, self.done = path, header, bytearray(header.tasks)
-        self.file = Appending(path)
+        self.file = path.open("ab", buffering=0)
         try:
             try:
-                portalocker.lock(self.file.file, portalocker.LockFlags.EXCLUSIVE | portalocker.LockFlags.NON_BLOCKING)
+                portalocker.lock(self.file, portalocker.LockFlags.EXCLUSIVE | portalocker.LockFlags.NON_BLOCKING)
             except portalocker.LockException as error:
                 raise CaseError(
                     f"--out {path}: another study is writing to it: wait for it to end, or give another file"
@@ -53,10 +57,12 @@ class StudyJournal:
                 begun = file.readline(len(first) + MOST_HEADER)
                 if begun.endswith(b"\n"):
                     _check(begun, header, path)
-                    self.file.truncate(_scan(file, len(begun), self))
+                    self.size = _scan(file, len(begun), self)
+                    self.file.truncate(self.size)
                 elif first.startswith(begun):  # empty, or stopped while the header was written
+                    self.size = 0
                     self.file.truncate(0)
-                    self.file.append(first)
+                    self._append(first)
                 else:
                     raise _foreign(path)
         except BaseException:
@@ -71,8 +77,19 @@ class StudyJournal:
         """
         if self.done[number]:
             raise AssertionError(f"task {number}: its rows are in the file already")
-        self.file.append(lines)
+        self._append(lines)
         self.done[number] = 1
+
+    def _append(self, record: bytes) -> None:
+        written = 0
+        try:
+            while written < len(record):
+                written += self.file.write(record[written:])
+        except OSError as error:
+            with suppress(OSError):
+                self.file.truncate(self.size)
+            raise JournalError(error.errno, error.strerror, str(self.path)) from error
+        self.size += len(record)
 
     def __enter__(self) -> "StudyJournal":
         return self

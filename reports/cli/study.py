@@ -10,8 +10,7 @@ from msgspec import UNSET
 
 from ...cases.run.executors import executor
 from ...cases.study import parquet
-from ...cases.study.appending import JournalError
-from ...cases.study.journal import StudyJournal, read
+from ...cases.study.journal import JournalError, StudyJournal, read
 from ...cases.study.plan import Header, header
 from ...cases.study.run import run
 from ...cases.study.schema import Study
