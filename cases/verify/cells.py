@@ -27,6 +27,7 @@ FAILED: dict[str, Verdict] = {
     "crashed": "fail",
     "unknown": "fail",
     "internal": "fail",
+    "no reference": "fail",
 }
 """Verdict of a cell by the kind of failure: a code that takes part and gives no answer has failed."""
 

@@ -80,15 +80,21 @@ class Column:
         return self.head.code
 
     def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
-        """Rows at all speeds that have a reference."""
+        """Rows at all speeds; where core has no reference, the reason. Nothing is solved there."""
         pairs = list(zip(speeds, core, strict=True))
-        without = [
-            empty(self.head, omega, "inconclusive", f"core with the same effects: {r.reason}")
-            for omega, r in pairs
-            if isinstance(r, Failure)
-        ]
-        cells, levels = self.work([(omega, r) for omega, r in pairs if not isinstance(r, Failure)])
+        if not self.solves:
+            return self.work(pairs)
+        without = [without_reference(self.head, omega, r) for omega, r in pairs if isinstance(r, Failure)]
+        solvable = [(omega, r) for omega, r in pairs if not isinstance(r, Failure)]
+        cells, levels = self.work(solvable) if solvable else ([], [])
         return without + cells, levels
+
+
+def without_reference(head: Head, omega: float, failure: Failure) -> Cell:
+    """The cell of a column at a speed without a reference: it fails if core has no answer with all effects either."""
+    if failure.kind == "no reference":
+        return failed(head, omega, failure)
+    return empty(head, omega, "inconclusive", f"core with the same effects: {failure.reason}")
 
 
 def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: Limits) -> list[Column]:

@@ -16,7 +16,7 @@ from ...core.participation import FAMILIES, families, numbered, participation
 from ...core.solve import mesh_sweep, rigid_strain_bias
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
-from ..input.errors import NO_STATE, CaseError
+from ..input.errors import NO_STATE
 from ..input.schema import Compare, Discretisation
 from ..judge.pairing import Array, aligned, weights
 from ..judge.uncertainty import widened
@@ -115,23 +115,20 @@ def as_given(source: Discretisation) -> Refining:
 
 
 def converged(blade: Blade, speeds: Sequence[float], compare: Compare, effects: Effects) -> list[Converged | Failure]:
-    """Core's converged modes at each speed (rad/s), with the given effects.
-
-    Raises:
-        CaseError: if the blade has fewer modes than the case compares.
-    """
+    """Core's converged modes at each speed (rad/s), with the given effects; a failure where too few modes qualify."""
     count, weight = 2 * compare.modes + MARGIN, weights(blade)
     found = _converged(blade, speeds, compare, effects, weight, count)
     if few := [omega for omega, one in found.items() if isinstance(one, int)]:
         count *= DEEPER
         found |= _converged(blade, few, compare, effects, weight, count)
-    for omega, one in found.items():
-        if isinstance(one, int):
-            raise CaseError(
-                f"{blade.name}: compare.modes: {compare.modes}: at {omega:g} rad/s only {one} of the lowest {count} modes "
-                "qualify; reduce it"
-            )
-    return [one for omega in speeds if not isinstance(one := found[omega], int)]
+    return [_enough(omega, found[omega], compare.modes, count) for omega in speeds]
+
+
+def _enough(omega: float, answer: Converged | Failure | int, compared: int, count: int) -> Converged | Failure:
+    if not isinstance(answer, int):
+        return answer
+    few = f"at {omega:g} rad/s only {answer} of the lowest {count} modes qualify; reduce it"
+    return Failure("no reference", f"compare.modes: {compared}: {few}")
 
 
 def _converged(

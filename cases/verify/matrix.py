@@ -92,7 +92,7 @@ def run(
         on_plan: called with every column before the first task starts.
 
     Raises:
-        CaseError: if core cannot solve a case, added results do not belong to these cases, or a name occurs twice.
+        CaseError: if added results do not belong to these cases, or a name occurs twice.
         UnknownCodeError: if a code is unknown.
     """
     blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
@@ -175,8 +175,10 @@ def _answer(future: Future[Any]) -> Any:
     """The result of a task, or a failure if this package raised an error; only the cells of that task are lost."""
     try:
         return future.result()
-    except (CaseError, BrokenExecutor, StoreError):
+    except (BrokenExecutor, StoreError):
         raise
+    except CaseError as error:
+        return Failure("no reference", str(error))
     except Exception as error:
         return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")
 

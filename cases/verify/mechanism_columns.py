@@ -25,7 +25,6 @@ from ...references.protocol.process import Failure, Limits
 from ...references.protocol.worker import MechanismAnswer as Answer
 from ...references.protocol.worker import mechanism_answers as answers
 from ...references.theories import blade_formulae
-from ..input.errors import CaseError
 from ..input.mechanism_schema import ClosedForm
 from ..judge.pairing import LEAST_MAC
 from ..judge.results import Cell, Verdict
@@ -44,7 +43,7 @@ _BY_HAND = Independence(
 )
 
 Array = NDArray[np.float64]
-References = dict[Effects, list["Reference"]]
+References = dict[Effects, list["Reference | Failure"]]
 Solve = Callable[[Sequence[mb.Mechanism], Sequence[float]], list[Answer]]
 Work = Callable[[Sequence[tuple[float, Any]]], Rows]
 
@@ -60,24 +59,19 @@ class Reference:
 
 
 def references(variant: Turning) -> References:
-    """Core's modes at each speed.
-
-    Raises:
-        CaseError: if core cannot solve it, or finds fewer modes than are compared.
-    """
+    """Core's modes at each speed; a failure where core cannot solve it, or finds fewer modes than are compared."""
     return {ALL_EFFECTS: [_reference(variant, omega) for omega in variant.speeds.tolist()]}
 
 
-def _reference(variant: Turning, omega: float) -> Reference:
-    text, path = variant.described.text, variant.described.path
+def _reference(variant: Turning, omega: float) -> Reference | Failure:
+    text = variant.described.text
     try:
         found = mb.solve(variant.at(omega), variant.described.guess, independent=text.independent or None)
     except (mb.MechanismError, EigenError) as error:
-        raise CaseError(f"{path}: speeds: {omega:g} rad/s: {error}") from error
+        return Failure("no reference", f"speeds: {omega:g} rad/s: {error}")
     if len(found.values) < variant.count:
-        raise CaseError(
-            f"{path}: compare.modes: {variant.count}: the mechanism has {len(found.values)} modes: reduce it"
-        )
+        few = f"compare.modes: {variant.count}: the mechanism has {len(found.values)} modes: reduce it"
+        return Failure("no reference", few)
     state = found.linear.state
     weight = reduced_mass(state.kinematics, state.cartesian)
     modes = MechanismModes(found.coordinates, state.q, found.values, found.shapes)

@@ -6,7 +6,6 @@ from dataclasses import dataclass, fields, replace
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...references.protocol.process import Failure
-from ..input.errors import CaseError
 from ..input.schema import Compare
 from ..judge.pairing import pair
 from ..judge.verdict import Effect
@@ -53,8 +52,8 @@ def felt(effects: Effects, blade: Blade, omega: float = 1.0) -> Effects:
 def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: Iterable[Effects]) -> References:
     """Core's references with all effects, and with each of the effects ``kept``.
 
-    Raises:
-        CaseError: if core with all effects has no stable steady state at one of the speeds, or too few modes.
+    Where core with all effects has no stable steady state, or too few modes, there is no reference for any effects, and the
+    failure gives the reason.
     """
     solved: dict[Effects, dict[float, Converged | Failure]] = {}
 
@@ -65,10 +64,22 @@ def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: It
             known |= zip(new, converged(blade, new, compare, effects), strict=True)
         return known
 
-    for omega, full in solve(ALL_EFFECTS, speeds).items():
-        if isinstance(full, Failure):
-            raise CaseError(f"{blade.name}: speeds: {omega:g} rad/s: no steady state: {full.reason}: give lower speeds")
-    return {effects: _references(blade, speeds, compare.target, effects, solve) for effects in {*kept, ALL_EFFECTS}}
+    full = solve(ALL_EFFECTS, speeds)
+    absent = {omega: _absent(omega, modes) for omega, modes in full.items() if isinstance(modes, Failure)}
+    solvable = [omega for omega in speeds if omega not in absent]
+    out: References = {}
+    for effects in {*kept, ALL_EFFECTS}:
+        present = zip(solvable, _references(blade, solvable, compare.target, effects, solve), strict=True)
+        by_speed = {**absent, **dict(present)}
+        out[effects] = [by_speed[omega] for omega in speeds]
+    return out
+
+
+def _absent(omega: float, failure: Failure) -> Failure:
+    """Why there is no reference at a speed."""
+    if failure.kind == "no reference":
+        return failure
+    return Failure("no reference", f"speeds: {omega:g} rad/s: no steady state: {failure.reason}: give lower speeds")
 
 
 def _references(

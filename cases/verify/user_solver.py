@@ -16,12 +16,12 @@ from ...core.modes import STATIONS, Modes
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ...references.protocol.worker import Run as Asked
-from ..input.errors import CaseError
 from ..input.schema import Compare, Variant
 from ..judge.results import Cell
 from ..judge.verdict import judge, percent, unsigned
 from . import published_tables
 from .cells import Head, Rows, empty, refined
+from .columns import without_reference
 from .controls import SAME_MODE, Wrong
 from .reference import References, felt, references
 from .refinement import Refining, solve
@@ -70,9 +70,6 @@ def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
     """Cells of a solver for one blade at all speeds of the case: against core and against printed numbers.
 
     Only printed numbers that core agrees with are used, with the effects of the table and with those of the solver.
-
-    Raises:
-        CaseError: if core cannot solve the blade.
     """
     target = solver.target or compare.target
     head = Head(variant.name, solver.name, "", "code", target, "nothing")
@@ -81,17 +78,19 @@ def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
         return [empty(head, omega, "not applicable", why) for omega in speeds], []
     effects = felt(solver.effects, variant.blade)
     solved = references(variant.blade, speeds, compare, [effects])
-    core = [(w, r) for w, r in zip(speeds, solved[effects], strict=True) if not isinstance(r, Failure)]
-    if len(core) < len(speeds):
-        raise CaseError(f"{variant.name}: core without {', '.join(solver.lacks)} has no steady state at every speed")
+    pairs = list(zip(speeds, solved[effects], strict=True))
+    without = [without_reference(head, omega, r) for omega, r in pairs if isinstance(r, Failure)]
+    core = [(omega, r) for omega, r in pairs if not isinstance(r, Failure)]
+    if not core:
+        return without, []
     finest = 4 * solver.levels[-1]
     refining = Refining(solver.levels, solver.order, finest) if solver.refines else Refining((1,), 0, 1, bracket=True)
     count = max(r.core.count for _, r in core)
     by_speed = {omega: r.core.wanted for omega, r in core}
     refinements = solve(
-        lambda runs: _answers(solver, variant.blade, runs), speeds, refining, count, lambda w, _: by_speed[w]
+        lambda runs: _answers(solver, variant.blade, runs), list(by_speed), refining, count, lambda w, _: by_speed[w]
     )
-    cells, levels = [], []
+    cells, levels = without, []
     for (omega, reference), one in zip(core, refinements, strict=True):
         new = refined(head, omega, reference, one, refining.order, refining.bracket)
         cells += new[0]

@@ -36,7 +36,9 @@ LOOK = 0.1
 GRACE = 5.0
 """Time that the supervisor has to end its processes, s."""
 
-Kind = Literal["crashed", "timed out", "nonsense", "refused", "not installed", "unsupported", "unknown", "internal"]
+Kind = Literal[
+    "crashed", "timed out", "nonsense", "refused", "not installed", "unsupported", "unknown", "internal", "no reference"
+]
 
 
 @dataclass(frozen=True)
@@ -62,7 +64,8 @@ class Failure:
     Attributes:
         kind: ``crashed``, ``timed out``, ``nonsense`` (an invalid answer), ``refused`` (the code reports that it
             could not solve the problem), ``not installed``, ``unsupported`` (the code declines the blade or mechanism),
-            ``unknown`` (no such code), ``internal`` (an error of this program, not of the code).
+            ``unknown`` (no such code), ``internal`` (an error of this program, not of the code), ``no reference`` (core has
+            no answer with which one could be compared).
         reason: one line, for tables.
     """
 

@@ -1,17 +1,20 @@
 """The run, end to end, with made-up codes whose right verdict is known; and its results on disk."""
 
+import re
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from southwell.cases.input.errors import CaseError
 from southwell.cases.input.schema import Case, read
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.verify import matrix
+from southwell.cases.verify.columns import PAPER
 from southwell.cases.verify.matrix import Progress
+from southwell.reports.shared import summary
+from southwell.reports.shared.statuses import FAILED
 
 CASE = """
 name = "rest"
@@ -197,17 +200,35 @@ def test_processes_and_threads_agree(case) -> None:
     ]
 
 
-def test_a_speed_without_steady_state_is_bad_input(case) -> None:
+def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     """Stretching resonates with the rotation where γ = α π/2: past it nothing holds the beam together."""
-    fast = case("[0, 1600]")
-    with pytest.raises(CaseError, match=r"rest: speeds: 1600 rad/s: no steady state: .*: give lower speeds"):
-        solve(fast, "analytic:GOOD")
+    fast, other = case("[0, 1600]"), case("[0]", "rest", "beside")
+    with ThreadPoolExecutor(2) as executor:
+        run = matrix.run([fast, other], ["analytic:GOOD", "analytic:ABSENT"], executor)
+    bad = [c for c in run.cells if c.omega == 1600]
+    assert {(c.code, c.verdict, c.mode) for c in bad} == {
+        (PAPER, "fail", 0),
+        ("core", "fail", 0),
+        ("good", "fail", 0),
+        ("absent", "not run", 0),
+    }
+    reason = r"speeds: 1600 rad/s: no steady state: .*: give lower speeds"
+    assert all(re.fullmatch(reason, c.reason) for c in bad if c.verdict == "fail")
+    answers = {
+        name: [(c.omega, c.mode, c.frequency, c.verdict) for c in run.cells if (c.case, c.code) == (name, "good")]
+        for name in ("rest", "beside")
+    }
+    assert [c for c in answers["rest"] if c[0] == 0] == answers["beside"]
+    assert [c[3] for c in answers["beside"]] == ["pass"] * 4
+    assert summary.status(run) == FAILED
 
 
-def test_more_modes_than_there_are_is_bad_input(case) -> None:
+def test_more_modes_than_there_are_cost_the_case(case) -> None:
     many = case("[0]", 'motions = ["edgewise", "flapwise"]', 'motions = ["torsion"]')  # without rotary inertia: none
-    with pytest.raises(CaseError, match=r"compare\.modes: 4: at 0 rad/s only 0 of the lowest 36 modes qualify"):
-        solve(many)
+    run = solve(many, "analytic:GOOD")
+    assert {(c.verdict, c.reason) for c in run.cells} == {
+        ("fail", "compare.modes: 4: at 0 rad/s only 0 of the lowest 36 modes qualify; reduce it")
+    }
 
 
 @pytest.mark.slow

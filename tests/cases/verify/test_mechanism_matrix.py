@@ -223,7 +223,6 @@ BAD = [
     ("rad_s = [10.0, 20.0, 30.0, 40.0]", "rad_s = [10.0, 5.0]", "speeds.rad_s: .*not ascending"),
     ("rad_s = [10.0, 20.0, 30.0, 40.0]", "gamma = [1.0]", "speeds.gamma"),
     ("[compare]\nmodes = 2\ngroups = 2", "", "compare: missing"),
-    ("modes = 2", "modes = 3", "compare.modes: 3: the mechanism has 2 modes: reduce it"),
     ("groups = 2", "groups = 0", "compare.groups: give groups = 0 and compare.lacking, the reason"),
     ("[speeds]\nrad_s = [10.0, 20.0, 30.0, 40.0]", "", "speeds: missing"),
     ('rotor = "shaft.rz"', 'rotor = "lag.rz"', "rotor: coordinate 'lag.rz': no motion at a rate"),
@@ -235,7 +234,14 @@ BAD = [
 def test_what_makes_no_case_is_told(tmp_path: Path, old: str, new: str, match: str) -> None:
     path = write(tmp_path, "hinged-blade", (old, new))
     with pytest.raises(CaseError, match=match):
-        mechanism_columns.references(mechanism_case.case(mechanisms.read(path)).variants[0])
+        mechanism_case.case(mechanisms.read(path))
+
+
+def test_more_modes_than_a_mechanism_has_are_told(tmp_path: Path) -> None:
+    path = write(tmp_path, "hinged-blade", ("modes = 2", "modes = 3"))
+    core = mechanism_columns.references(mechanism_case.case(mechanisms.read(path)).variants[0])
+    failure = Failure("no reference", "compare.modes: 3: the mechanism has 2 modes: reduce it")
+    assert core[ALL_EFFECTS] == [failure] * 4
 
 
 def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
