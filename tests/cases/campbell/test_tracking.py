@@ -16,7 +16,7 @@ from southwell.cases.judge.pairing import weights
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.participation import participation
-from southwell.core.solve import modes
+from southwell.core.solve import mesh_modes
 
 from ...support.veering import BLADE, EDGE, FLAP, MEETING, oscillators
 
@@ -127,14 +127,14 @@ def test_flap_and_edge_of_a_uniform_beam_cross() -> None:
     beam = uniform_blade("beam", 6.0, 0.3, EA=2.8e7, GJ=1.2e4, EI_y=1.4e4, EI_z=1.8e4, mass=1.2, I_y=6e-4, I_z=6e-4)
     speeds = np.linspace(0.0, 20.0, 6)
     weight = weights(beam)
-    tracks = track(lambda omega: modes(beam, omega, 12, 6), speeds, weight, 4)
+    tracks = track(lambda omega: mesh_modes(beam, omega, 12, 6), speeds, weight, 4)
     np.testing.assert_array_equal(tracks.omega, speeds)
     shares = by_track(tracks, beam)
     found = encounters(tracks, shares, weight)
     assert {e.kind for e in found} == {"crossing"}
     first = next(e for e in found if e.tracks == (0, 1))
     assert first.gap < 1e-6
-    pair = modes(beam, first.omega, 12, 2).frequencies
+    pair = mesh_modes(beam, first.omega, 12, 2).frequencies
     assert pair[1] / pair[0] - 1 < 1e-3
     assert pair.mean() == pytest.approx(first.frequency, rel=1e-3)
     for t in range(4):
@@ -172,6 +172,28 @@ def test_a_shape_that_has_no_successor_ends_its_track_and_another_begins() -> No
     assert high - low <= tracks.smallest * (1 + 1e-9)
 
 
+def test_a_successor_that_is_too_unlike_is_none() -> None:
+    """MAC 0.3: the mode of the next speed is nearest to the lost one, and still another."""
+
+    def solve(omega: float) -> Modes:
+        shapes = np.zeros((2, 21, 4), complex)
+        shapes[0, :, 2] = shapes[1, :, 1] = STATIONS
+        if omega > 2.2:
+            shapes[1, :, 1], shapes[1, :, 0] = np.sqrt(0.3) * STATIONS, np.sqrt(0.7) * STATIONS
+        return Modes(omega, np.array([5.0, 9.0]), shapes, 10)
+
+    tracks = track(solve, [0.0, 1.0, 2.0, 3.0], WEIGHT, 2)
+    assert tracks.count == 3
+    assert [(d.track, d.mac) for d in tracks.doubts] == [(1, 0.0)]
+
+
+def test_frequencies_without_a_stated_uncertainty_have_none_in_the_tracks() -> None:
+    def solve(omega: float) -> Modes:
+        return replace(oscillators(1.0)(omega), uncertainty=np.zeros(0))
+
+    assert np.isinf(track(solve, SPEEDS, WEIGHT, 2).uncertainty).all()
+
+
 def test_speeds_out_of_order_are_refused() -> None:
     with pytest.raises(ValueError, match="not ascending"):
         track(oscillators(0.0), [1.0, 0.5], WEIGHT, 2)
@@ -203,13 +225,13 @@ def test_a_slight_twist_opens_the_crossing_by_as_much_as_perturbation_theory_say
     twisted = replace(straight, twist=np.radians(1.0 - s / 20.0))
 
     def met_by(blade: Blade) -> Encounter:
-        tracks = track(lambda omega: modes(blade, omega, 20, 4), speeds, weight, 2)
+        tracks = track(lambda omega: mesh_modes(blade, omega, 20, 4), speeds, weight, 2)
         (e,) = encounters(tracks, by_track(tracks, blade), weight)
         return e
 
     crossing, veering = met_by(straight), met_by(twisted)
     assert (crossing.kind, veering.kind) == ("crossing", "veering")
-    shapes = modes(straight, crossing.omega - 0.2, 20, 2).shapes
+    shapes = mesh_modes(straight, crossing.omega - 0.2, 20, 2).shapes
     fine = np.linspace(0.0, 20.0, 401)
     flap, edge = (CubicSpline(20.0 * STATIONS, shapes[k, :, column].real) for k, column in ((0, 2), (1, 1)))
     size = [40.0 * simpson(shape(fine) ** 2, x=fine) for shape in (flap, edge)]

@@ -9,6 +9,7 @@ import pytest
 from southwell import multibody as mb
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import reading, southwell_toml
+from southwell.core import curve
 from southwell.core.blade import Blade, BladeError, section_mass, section_stiffness
 from southwell.core.element.discretize import discretize, divide
 from southwell.core.element.sections import frames
@@ -115,6 +116,16 @@ def test_sections_turn_with_the_tangent_at_the_kink() -> None:
     np.testing.assert_allclose(before[:3, :3], np.eye(3), atol=1e-15)
     np.testing.assert_allclose(beyond[:3, 0], [np.cos(ANGLE), -np.sin(ANGLE), 0], atol=1e-15)
     np.testing.assert_allclose(before[:3, 3], beyond[:3, 3], atol=1e-15)
+
+
+@pytest.mark.parametrize("off", [-5e-12, 5e-12])
+def test_an_arc_length_within_rounding_of_a_kink_is_the_kink(off: float) -> None:
+    before, beyond = (
+        curve.at(kinked().stations, kinked().curve, (8.0,), np.array([8.0 + off]), before=b)[1][0]
+        for b in (True, False)
+    )
+    np.testing.assert_allclose(before, [1.0, 0.0, 0.0], atol=1e-15)
+    np.testing.assert_allclose(beyond, [np.cos(ANGLE), -np.sin(ANGLE), 0.0], atol=1e-15)
 
 
 def test_a_kink_of_zero_angle_changes_nothing() -> None:
