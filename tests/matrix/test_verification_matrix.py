@@ -127,6 +127,18 @@ def test_the_surrogate_rises_as_the_papers_blade_does(run: Run) -> None:
 
 
 @needs_run
+def test_verdicts_follow_from_the_numbers(run: Run) -> None:
+    judged = [c for c in run.cells if c.frequency and c.reference and c.uncertainty is not None]
+    assert len(judged) > 100
+    for cell in judged:
+        difference = (cell.frequency or 0.0) / (cell.reference or 1.0) - 1.0
+        assert cell.difference == pytest.approx(difference, abs=1e-12), cell
+        within = abs(difference) + (cell.uncertainty or 0.0) <= cell.target
+        if cell.verdict in ("pass", "coarse", "fail", "inconclusive"):
+            assert within == (cell.verdict in ("pass", "coarse")), cell
+
+
+@needs_run
 @pytest.mark.parametrize("name", FAST)
 def test_a_fast_fault_is_detected_by_a_named_cell(run: Run, name: str) -> None:
     (control,) = (control for control in run.controls if control.control == name)

@@ -57,14 +57,13 @@ def test_they_are_found_each_once(file: str) -> None:
     ],
 )
 def test_what_a_switch_leaves_out_of_a_table_is_said(case: str, variant: str, name: str, switch: str) -> None:
-    for found in library.load(case).variants:
-        left = {u.name: u for u in found.unused}
-        if found.name == f"{case}/{variant}":
-            assert set(left) == {name}
-            assert switch in left[name].why
-            assert left[name].largest
-        else:
-            assert name not in left
+    unused = {v.name: {u.name: u for u in v.unused} for v in library.load(case).variants}
+    switched = unused.pop(f"{case}/{variant}")
+    assert set(switched) == {name}
+    assert switch in switched[name].why
+    assert switched[name].largest
+    assert unused
+    assert not any(name in others for others in unused.values())
 
 
 def test_a_teeter_hinge_is_said_to_be_clamped() -> None:

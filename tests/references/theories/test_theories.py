@@ -121,7 +121,7 @@ def test_the_papers_cantilever(code, edgewise: tuple[str, ...], flapwise: tuple[
     """Digits of two independent spectral solutions that take the sections as rigid in torsion."""
     found = code.solve(park(), 10.0, FINE, 12)
     for plane, digits in ((Y, edgewise), (Z, flapwise)):
-        for frequency, text in zip(family(found, plane), digits, strict=False):
+        for frequency, text in zip(family(found, plane)[: len(digits)], digits, strict=True):
             assert round(frequency, len(text.partition(".")[2])) == float(text)
 
 
@@ -186,6 +186,7 @@ def test_southwells_bracket_holds_for_every_mode(hub: float, omega: float, taper
     found, truth = (code.solve(blade, omega, 20, 6) for code in (SOUTHWELL, ASSUMED))
     for plane in (Y, Z):
         here = np.abs(found.shapes).max(1).argmax(1) == plane
+        assert here.sum() >= 2
         reach = found.uncertainty[here][:2] * found.frequencies[here][:2]
         assert (np.abs(found.frequencies[here][:2] - family(truth, plane)[:2]) <= reach + 1e-9).all()
 
