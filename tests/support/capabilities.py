@@ -27,6 +27,7 @@ class Can:
         thin: sections without moments of inertia.
         sheared: sections that are flexible in shear.
         curved: prebend or sweep.
+        coned: precone.
         stations: properties that change their slope at a dozen stations or more.
         solid: solves the solid of a blade that is known as one, whatever else it can.
     """
@@ -45,23 +46,24 @@ class Can:
     thin: bool = True
     sheared: bool = False
     curved: bool = False
+    coned: bool = False
     stations: bool = True
     solid: bool = False
 
 
 CODES = {
     "exudyn-ancf": Can(taper=False, unlike=False, twist=False, tip=False, lacks=("rotary inertia",)),
-    "exudyn-tree": Can(coupled=True, anisotropic=True, hinged=True, sheared=True, curved=True),
-    "exudyn-beam": Can(coupled=True, sheared=True, curved=True),
+    "exudyn-tree": Can(coupled=True, anisotropic=True, hinged=True, sheared=True, curved=True, coned=True),
+    "exudyn-beam": Can(coupled=True, sheared=True, curved=True, coned=True),
     "scikit-fem": Can(hinged=True),
-    "scikit-fem-reissner": Can(coupled=True, anisotropic=True, hinged=True, sheared=True, curved=True),
-    "pinocchio": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True),
-    "drake": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True),
-    "mujoco": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True),
+    "scikit-fem-reissner": Can(coupled=True, anisotropic=True, hinged=True, sheared=True, curved=True, coned=True),
+    "pinocchio": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True, coned=True),
+    "drake": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True, coned=True),
+    "mujoco": Can(twin=True, coupled=True, anisotropic=True, sheared=True, curved=True, coned=True),
     "pybmodes": Can(stretch=False, tip=False, lacks=("prestretch", "coriolis", "rotary inertia")),
     "scikit-fem-solid": Can(taper=False, twist=False, tip=False, thin=False, solid=True),
     "calculix": Can(taper=False, twist=False, tip=False, thin=False, lacks=("coriolis",), solid=True),
-    "sharpy": Can(coupled=True, anisotropic=True, sheared=True, curved=True),
+    "sharpy": Can(coupled=True, anisotropic=True, sheared=True, curved=True, coned=True),
     "frame3dd": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia"), stations=False),
     "yoo-shin": Can(twist=False, lacks=("prestretch", "rotary inertia")),
     "assumed-modes": Can(stretch=False, lacks=("prestretch", "coriolis", "rotary inertia")),
@@ -82,6 +84,7 @@ class Asks:
         thin: sections without moments of inertia.
         sheared: sections that are flexible in shear.
         curved: prebend or sweep.
+        coned: precone.
         stations: a dozen or more, where properties change their slope.
         solid: a solid is known whose beam it is.
         axial: axial modes are compared.
@@ -99,6 +102,7 @@ class Asks:
     thin: bool = False
     sheared: bool = False
     curved: bool = False
+    coned: bool = False
     stations: bool = False
     solid: bool = False
     axial: bool = False
@@ -128,6 +132,8 @@ BLADES = {
     "articulated/sprung": Asks(hinged=True),
     "rotating-cable": Asks(unlike=True, hinged=True),
     "tip-mass": Asks(tip=True),
+    "tip-mass-in-plane/straight": Asks(taper=True, unlike=True, tip=True, gentle=0.0),
+    "tip-mass-in-plane/coned": Asks(taper=True, unlike=True, tip=True, coned=True, gentle=0.0),
     "tapered-beam": Asks(taper=True, unlike=True, gentle=0.0),
     "hodges-rutkowski": Asks(taper=True, stations=True),
     "curved-solid": Asks(
@@ -162,7 +168,7 @@ TABLES = {
 """Printed series, and the blade they are about."""
 
 
-NEEDS = ("taper", "twist", "unlike", "coupled", "anisotropic", "hinged", "tip", "thin", "sheared", "curved", "stations")
+NEEDS = ("taper", "twist", "unlike", "coupled", "anisotropic", "hinged", "tip", "thin", "sheared", "curved", "coned", "stations")
 
 
 def solves(can: Can, asks: Asks) -> bool:
