@@ -106,11 +106,11 @@ def _checked(software: Software, expected: tuple[tuple[str, str], ...], task: Ca
     worker = import_module("distributed").get_worker()
     if worker.state.nthreads != 1:
         raise CaseError(f"worker {worker.address}: {worker.state.nthreads} threads: start it with --nthreads 1")
-    for (name, here), (_, there) in zip(expected, installed(software), strict=True):
-        if here != there:
+    for (name, expected_version), (_, version) in zip(expected, installed(software), strict=True):
+        if expected_version != version:
             raise CaseError(
-                f"worker {worker.address}: {name}: {there or 'not installed'}, but {here or 'not installed'} in the "
-                "process that asks: install the same version"
+                f"worker {worker.address}: {name}: {version or 'not installed'}, but "
+                f"{expected_version or 'not installed'} in the process that asks: install the same version"
             )
     return task()
 

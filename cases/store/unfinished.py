@@ -119,7 +119,7 @@ def read(path: Path) -> Run:
         facts = msgspec.json.decode(content, type=dict[str, Any])
         plan = msgspec.convert(facts["plan"], tuple[Planned, ...])
         settings = msgspec.convert(facts["settings"], tuple[Setting, ...])
-        found = [codec.decode(rows) for rows in store.values(ROWS, begun)]
+        answers = [codec.decode(rows) for rows in store.values(ROWS, begun)]
     except KeyError:
         return Run((), unfinished="the run was stopped before its first answer")
     except (TypeError, ValueError) as error:
@@ -132,8 +132,8 @@ def read(path: Path) -> Run:
         return place.get((row.case, row.code), len(place))
 
     run = Run(
-        cells=tuple(sorted((c for cells, _ in found for c in cells), key=order)),
-        levels=tuple(sorted((v for _, levels in found for v in levels), key=order)),
+        cells=tuple(sorted((c for cells, _ in answers for c in cells), key=order)),
+        levels=tuple(sorted((v for _, levels in answers for v in levels), key=order)),
         versions=facts["versions"],
         command=facts["command"],
         settings=settings,

@@ -108,15 +108,15 @@ def _foreign(path: Path) -> CaseError:
 
 def _check(line: bytes, expected: Header, path: Path) -> None:
     try:
-        found = _header.decode(line)
+        begun = _header.decode(line)
     except (msgspec.DecodeError, UnicodeDecodeError):
         raise _foreign(path) from None
-    if found.package != expected.package:
-        other = f"{found.version}, here {expected.version}" if found.version != expected.version else "changed sources"
+    if begun.package != expected.package:
+        other = f"{begun.version}, here {expected.version}" if begun.version != expected.version else "changed sources"
         raise CaseError(
             f"--out {path}: written by another version of Southwell or its libraries ({other}): answers are not mixed: {OTHER}"
         )
-    if found != expected:
+    if begun != expected:
         raise CaseError(f"--out {path}: of another study: the study file or a blade has changed: {OTHER}")
 
 

@@ -77,13 +77,13 @@ def tasks(study: Study, numbers: Iterable[int]) -> Iterator[tuple[int, Task]]:
     text = study.text
     values = sample(study.properties, text.samples, text.seed)
     for number in numbers:
-        blade, one = divmod(number, text.samples)
+        blade, sample_number = divmod(number, text.samples)
         yield (
             number,
             Task(
                 blade=study.blades[blade],
-                sample=one,
-                changes=changes(study.properties, values[one]),
+                sample=sample_number,
+                changes=changes(study.properties, values[sample_number]),
                 speeds=study.speeds,
                 modes=text.modes,
                 elements=text.elements,

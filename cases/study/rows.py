@@ -81,25 +81,27 @@ def solve(task: Task) -> bytes:
         if isinstance(answer, str):
             rows.append(replace(empty, reason=answer))
         else:
-            rows += [_filled(empty, one) for one in answer]
+            rows += [_filled(empty, mode) for mode in answer]
     return encoded(rows)
 
 
 def encoded(rows: Sequence[Row]) -> bytes:
     """The rows of one task as lines, with ``rows_left``."""
-    left = range(len(rows) - 1, -1, -1)
-    return b"".join(msgspec.json.encode(replace(row, rows_left=k)) + b"\n" for row, k in zip(rows, left, strict=True))
+    following = range(len(rows) - 1, -1, -1)
+    return b"".join(
+        msgspec.json.encode(replace(row, rows_left=k)) + b"\n" for row, k in zip(rows, following, strict=True)
+    )
 
 
-def _filled(row: Row, one: Named) -> Row:
+def _filled(row: Row, mode: Named) -> Row:
     return replace(
         row,
-        mode=one.mode,
-        name=one.name,
-        frequency_rad_s=one.frequency,
-        frequency_hz=one.frequency / (2 * pi),
-        relative_uncertainty=one.uncertainty if isfinite(one.uncertainty) else None,
-        steady_strain=one.strain if isfinite(one.strain) else None,
+        mode=mode.mode,
+        name=mode.name,
+        frequency_rad_s=mode.frequency,
+        frequency_hz=mode.frequency / (2 * pi),
+        relative_uncertainty=mode.uncertainty if isfinite(mode.uncertainty) else None,
+        steady_strain=mode.strain if isfinite(mode.strain) else None,
     )
 
 

@@ -89,19 +89,19 @@ def distributions(given: Mapping[str, Any], path: str) -> dict[str, Distribution
     Raises:
         CaseError: naming the property and the field.
     """
-    found: dict[str, Distribution] = {}
+    distributions: dict[str, Distribution] = {}
     for name, table in given.items():
         if name not in PROPERTIES:
             raise CaseError(f"{path}: properties.{name}: not a property of a blade: {nearest(name, PROPERTIES)}")
-        one: Distribution = convert(table, Distribution, path, f"properties.{name}")  # type: ignore[arg-type]
-        if one.absolute and name not in UNITS:
+        distribution: Distribution = convert(table, Distribution, path, f"properties.{name}")  # type: ignore[arg-type]
+        if distribution.absolute and name not in UNITS:
             raise CaseError(
                 f"{path}: properties.{name}.absolute: {name} varies along the blade: leave it out and give factors"
             )
-        if error := one.error():
+        if error := distribution.error():
             raise CaseError(f"{path}: properties.{name}.{error}")
-        found[name] = one
-    return found
+        distributions[name] = distribution
+    return distributions
 
 
 def sample(properties: Mapping[str, Distribution], samples: int, seed: int) -> Array:
@@ -113,10 +113,10 @@ def sample(properties: Mapping[str, Distribution], samples: int, seed: int) -> A
         seed=np.random.default_rng(seed),  # pyright: ignore[reportCallIssue] # SciPy before 1.15 has no rng
     )
     unit = hypercube.random(samples)
-    return np.stack([one.quantile(unit[:, k]) for k, one in enumerate(properties.values())], axis=1)
+    return np.stack([distribution.quantile(unit[:, k]) for k, distribution in enumerate(properties.values())], axis=1)
 
 
 def changes(properties: Mapping[str, Distribution], values: Array) -> tuple[Change, ...]:
     """The changes of a blade for one sample (properties,)."""
     given = zip(properties.items(), values.tolist(), strict=True)
-    return tuple(Change(name, value, not one.absolute) for (name, one), value in given)
+    return tuple(Change(name, value, not distribution.absolute) for (name, distribution), value in given)

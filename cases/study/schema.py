@@ -98,12 +98,14 @@ def read(path: Path) -> tuple[Study, tuple[Unused, ...]]:
         raise CaseError(f"{path}: samples: {text.samples}: no sampled properties: add [properties], or leave it out")
     properties = distributions(text.properties, str(path))
     speeds = rad_s(text.speeds, str(path))
-    found = [pair for one in text.blades for pair in _blades(one, path)]
-    blades = tuple(blade for blade, _ in found)
+    pairs = [pair for entry in text.blades for pair in _blades(entry, path)]
+    blades = tuple(blade for blade, _ in pairs)
     for k, blade in enumerate(blades):
         if blade.name in [other.name for other in blades[:k]]:
             raise CaseError(f"{path}: blades: {blade.name!r} twice: rows are found by its name: rename one, or drop it")
-    return Study(blades, tuple(speeds.tolist()), properties, text), tuple(one for _, unused in found for one in unused)
+    return Study(blades, tuple(speeds.tolist()), properties, text), tuple(
+        entry for _, unused in pairs for entry in unused
+    )
 
 
 def _blades(given: str | BladeFile, study: Path) -> list[tuple[Blade, tuple[Unused, ...]]]:
@@ -118,5 +120,5 @@ def _blades(given: str | BladeFile, study: Path) -> list[tuple[Blade, tuple[Unus
                 case = library.select(path if given.endswith(".toml") else given)
                 return [(variant.blade, variant.unused) for variant in case.variants]
             given = BladeFile(given)
-        found = readers.reading(folder / given.file, given.mount(folder))
-        return [(found.mounted(folder / given.file), found.source.unused)]
+        reading = readers.reading(folder / given.file, given.mount(folder))
+        return [(reading.mounted(folder / given.file), reading.source.unused)]

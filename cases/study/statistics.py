@@ -48,11 +48,11 @@ def spreads(rows: Iterable[Row]) -> pd.DataFrame:
         sample's own order, so that it belongs to different motions if samples exchange the order of two modes.
     """
     columns = ["blade", "omega", "mode", "name", "frequency"]
-    found = pd.DataFrame(
+    table = pd.DataFrame(
         ((r.blade, r.omega_rad_s, r.mode, r.name, r.frequency_rad_s) for r in rows if r.reason is None),
         columns=pd.Index(columns),
     )
-    groups = found.groupby(columns[:3], as_index=False)
+    groups = table.groupby(columns[:3], as_index=False)
     return groups.agg(
         name=("name", lambda names: names.value_counts().index[0]),
         samples=("frequency", "size"),

@@ -143,26 +143,26 @@ def modes(data: Any, omega: float, count: int) -> Modes:
     Raises:
         NonsenseError: if the data are invalid.
     """
-    found = convert(data, _Modes)
-    m = len(found.frequencies)
+    answer = convert(data, _Modes)
+    m = len(answer.frequencies)
     _keep(1 <= m <= count, f"frequencies: {m} returned, {count} requested")
-    shapes = _array("shapes", found.shapes, 3)
+    shapes = _array("shapes", answer.shapes, 3)
     _keep(len(shapes) == m, f"shapes: {len(shapes)} for {m} frequencies")
     _keep(shapes.shape[1:] == (len(STATIONS), 4), f"shapes: each must be {len(STATIONS)} stations by 4 columns")
     for name in ("damping", "uncertainty", "rounding"):
-        values = getattr(found, name)
+        values = getattr(answer, name)
         _keep(len(values) in (0, m), f"{name}: {len(values)} values for {m} frequencies")
         _finite(name, values)
-    _finite("frequencies", found.frequencies)
+    _finite("frequencies", answer.frequencies)
     _finite("shapes", shapes.view(float))
-    _keep(min(found.frequencies) >= 0.0, f"frequencies: {_quoted(found.frequencies)}: negative")
-    _ascending("frequencies", found.frequencies)
+    _keep(min(answer.frequencies) >= 0.0, f"frequencies: {_quoted(answer.frequencies)}: negative")
+    _ascending("frequencies", answer.frequencies)
     for name in ("uncertainty", "rounding"):
-        _keep(min(getattr(found, name), default=0.0) >= 0.0, f"{name}: {_quoted(getattr(found, name))}: negative")
-    _keep(max(np.abs(found.damping), default=0.0) <= 1.0, f"damping: {_quoted(found.damping)}: ratios above 1")
-    near = abs(found.omega - omega) <= SAME_SPEED * abs(omega)
-    _keep(near, f"omega: {found.omega!r}: the requested speed is {omega!r} rad/s")
-    _keep(np.isnan(found.strain) or 0.0 <= found.strain <= LARGEST, f"strain: {found.strain!r}: not a strain")
+        _keep(min(getattr(answer, name), default=0.0) >= 0.0, f"{name}: {_quoted(getattr(answer, name))}: negative")
+    _keep(max(np.abs(answer.damping), default=0.0) <= 1.0, f"damping: {_quoted(answer.damping)}: ratios above 1")
+    same_speed = abs(answer.omega - omega) <= SAME_SPEED * abs(omega)
+    _keep(same_speed, f"omega: {answer.omega!r}: the requested speed is {omega!r} rad/s")
+    _keep(np.isnan(answer.strain) or 0.0 <= answer.strain <= LARGEST, f"strain: {answer.strain!r}: not a strain")
     return decode_modes(data)
 
 
@@ -172,20 +172,20 @@ def mechanism_modes(data: Any) -> MechanismModes:
     Raises:
         NonsenseError: if the data are invalid.
     """
-    found = convert(data, _MechanismModes)
-    values, shapes = _array("values", found.values, 1), _array("shapes", found.shapes, 2)
-    m, k = len(values), len(found.coordinates)
+    answer = convert(data, _MechanismModes)
+    values, shapes = _array("values", answer.values, 1), _array("shapes", answer.shapes, 2)
+    m, k = len(values), len(answer.coordinates)
     _keep(m >= 1, "values: none")
     _keep(
-        k >= 1 and len(set(found.coordinates)) == k,
-        f"coordinates: {_quoted(found.coordinates)}: empty, or a duplicate name",
+        k >= 1 and len(set(answer.coordinates)) == k,
+        f"coordinates: {_quoted(answer.coordinates)}: empty, or a duplicate name",
     )
-    _keep(len(found.steady) == k, f"steady: {len(found.steady)} values for {k} coordinates")
+    _keep(len(answer.steady) == k, f"steady: {len(answer.steady)} values for {k} coordinates")
     _keep(shapes.shape == (m, k), f"shapes: must be {m} shapes of {k} coordinates each")
-    for name, numbers in (("steady", found.steady), ("values", values.view(float)), ("shapes", shapes.view(float))):
+    for name, numbers in (("steady", answer.steady), ("values", values.view(float)), ("shapes", shapes.view(float))):
         _finite(name, numbers)
     _ascending("values, by modulus", np.abs(values) * (1.0 + 1e-9 * np.arange(m)))
-    return MechanismModes(tuple(found.coordinates), np.array(found.steady), values, shapes, found.seconds)
+    return MechanismModes(tuple(answer.coordinates), np.array(answer.steady), values, shapes, answer.seconds)
 
 
 def declared(data: Any) -> Declared:
@@ -194,12 +194,12 @@ def declared(data: Any) -> Declared:
     Raises:
         NonsenseError: if the data are invalid.
     """
-    found = convert(data, Declared)
-    _keep(found.blades or found.mechanisms, "the code solves neither blades nor mechanisms")
-    if found.blades:
-        _keep(len(found.levels) > 0, "levels: (): give at least one refinement")
-        _keep(np.all(np.diff(found.levels) > 0), f"levels: {found.levels}: not ascending")
-    return found
+    declarations = convert(data, Declared)
+    _keep(declarations.blades or declarations.mechanisms, "the code solves neither blades nor mechanisms")
+    if declarations.blades:
+        _keep(len(declarations.levels) > 0, "levels: (): give at least one refinement")
+        _keep(np.all(np.diff(declarations.levels) > 0), f"levels: {declarations.levels}: not ascending")
+    return declarations
 
 
 def convert(data: Any, kind: type[T]) -> T:
@@ -216,13 +216,13 @@ def convert(data: Any, kind: type[T]) -> T:
         raise NonsenseError(f"{about}{one_line(error)}") from None
 
 
-def _array(name: str, found: _Complex, dimensions: int) -> NDArray[np.complex128]:
+def _array(name: str, encoded: _Complex, dimensions: int) -> NDArray[np.complex128]:
     try:
-        out = decode_complex(found.sizes, found.base64)
+        array = decode_complex(encoded.sizes, encoded.base64)
     except ValueError as error:
-        raise NonsenseError(f"{name}: not {found.sizes} complex numbers in base64: {one_line(error)}") from None
-    _keep(out.ndim == dimensions, f"{name}: {out.ndim} dimensions instead of {dimensions}")
-    return out
+        raise NonsenseError(f"{name}: not {encoded.sizes} complex numbers in base64: {one_line(error)}") from None
+    _keep(array.ndim == dimensions, f"{name}: {array.ndim} dimensions instead of {dimensions}")
+    return array
 
 
 def _finite(name: str, values: Any) -> None:

@@ -25,5 +25,5 @@ def cache_last(function: Callable[P, T]) -> Callable[P, T]:
     return cached
 
 
-def _same(one: object, other: object) -> bool:
-    return one is other or (isinstance(one, int | tuple) and type(one) is type(other) and one == other)
+def _same(a: object, b: object) -> bool:
+    return a is b or (isinstance(a, int | tuple) and type(a) is type(b) and a == b)

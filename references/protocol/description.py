@@ -85,18 +85,18 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
         UnknownCodeError: if a name is unknown, or there is no code at an import path.
     """
     where = {name: registry.address(name) for name in names}
-    shown = [encode(blade) for blade in blades]
+    encoded = [encode(blade) for blade in blades]
     bundled = {name: at for name, at in where.items() if registry.bundled(at["code"])}
-    found = {one.asked: one for one in _asked(bundled, shown, limits)}
-    alone = [name for name in where if name not in found or found[name].failure]
+    descriptions = {description.asked: description for description in _asked(bundled, encoded, limits)}
+    unanswered = [name for name in where if name not in descriptions or descriptions[name].failure]
     with ThreadPoolExecutor(TOGETHER) as threads:
-        again = threads.map(lambda name: _asked({name: where[name]}, shown, limits)[0], alone)
-        found |= zip(alone, again, strict=True)
-    for one in found.values():
-        mistyped = ":" in one.asked
-        if one.failure and one.failure.kind == "unknown" and mistyped:
-            raise UnknownCodeError(one.failure.reason)
-    return tuple(found[name] for name in names)
+        again = threads.map(lambda name: _asked({name: where[name]}, encoded, limits)[0], unanswered)
+        descriptions |= zip(unanswered, again, strict=True)
+    for description in descriptions.values():
+        mistyped = ":" in description.asked
+        if description.failure and description.failure.kind == "unknown" and mistyped:
+            raise UnknownCodeError(description.failure.reason)
+    return tuple(descriptions[name] for name in names)
 
 
 def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits: Limits) -> list[Description]:
@@ -123,25 +123,25 @@ def _failed(asked: str, failure: Failure, name: Any = None) -> Description:
 
 def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
     name = data.get("name")
-    refused, trouble = data.pop("refused", []), data.pop("raised", "")
+    refused, error_text = data.pop("refused", []), data.pop("raised", "")
     try:
         if failure := boundary.failure(data):
             return _failed(asked, failure)
-        said = boundary.declared(data)
+        declarations = boundary.declared(data)
         refused = boundary.convert(refused, list[str | None])
         if len(refused) not in (0, blades):
             raise NonsenseError(f"unsupported(): {len(refused)} answers for {blades} blades")
     except NonsenseError as error:
         return _failed(asked, Failure("nonsense", one_line(error)), name)
-    facts = {field: getattr(said, field) for field in said.__struct_fields__}
-    facts["name"] = said.name
+    facts = {field: getattr(declarations, field) for field in declarations.__struct_fields__}
+    facts["name"] = declarations.name
     origin = (
-        Independence(**{f: getattr(said.independence, f) for f in said.independence.__struct_fields__})
-        if (said.independence)
+        Independence(**{f: getattr(declarations.independence, f) for f in declarations.independence.__struct_fields__})
+        if (declarations.independence)
         else None
     )
-    effects = Effects(**{f: getattr(said.effects, f) for f in said.effects.__struct_fields__})
-    known = Description(
+    effects = Effects(**{f: getattr(declarations.effects, f) for f in declarations.effects.__struct_fields__})
+    description = Description(
         asked,
         **{
             **facts,
@@ -150,7 +150,7 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
             "refused": tuple(why and one_line(why) for why in refused),
         },
     )
-    return replace(known, failure=Failure("nonsense", one_line(trouble))) if trouble else known
+    return replace(description, failure=Failure("nonsense", one_line(error_text))) if error_text else description
 
 
 BLADE_DECLARATIONS = ("levels", "order", "finest", "motions", "digits", "bracket")

@@ -81,12 +81,12 @@ class Child:
 
     def wait(self, seconds: float) -> bool:
         """Wait for the exit code; False if it is not there in time."""
-        latest, said = time.monotonic() + seconds, select.poll()
-        said.register(self._status, select.POLLIN)
+        deadline, poller = time.monotonic() + seconds, select.poll()
+        poller.register(self._status, select.POLLIN)
         while self.poll() is None:
-            if (left := latest - time.monotonic()) <= 0.0:
+            if (remaining := deadline - time.monotonic()) <= 0.0:
                 return False
-            said.poll(1000.0 * left)
+            poller.poll(1000.0 * remaining)
         return True
 
     def kill(self) -> None:
@@ -122,18 +122,18 @@ def start(module: str, space: int) -> Child:
     """Start a process that calls ``main()`` of a module and has at most ``space`` bytes of address space."""
     forker = prepare()
     pipes = [os.pipe() for _ in range(4)]
-    theirs = [pipes[0][0], *(pipe[1] for pipe in pipes[1:])]
-    mine = [pipes[0][1], *(pipe[0] for pipe in pipes[1:])]
+    child_ends = [pipes[0][0], *(pipe[1] for pipe in pipes[1:])]
+    own_ends = [pipes[0][1], *(pipe[0] for pipe in pipes[1:])]
     try:
         with suppress(BrokenPipeError, ConnectionResetError):  # it was killed; then nobody holds the other ends
-            socket.send_fds(forker.link, [json.dumps([module, space]).encode().ljust(REQUEST)], theirs)
+            socket.send_fds(forker.link, [json.dumps([module, space]).encode().ljust(REQUEST)], child_ends)
     finally:
-        for number in theirs:
+        for number in child_ends:
             os.close(number)
-    for number in mine:
+    for number in own_ends:
         os.set_blocking(number, False)
-    stdin, stdout, stderr = (os.fdopen(n, m, buffering=0) for n, m in zip(mine, ("wb", "rb", "rb"), strict=False))
-    return Child(stdin, stdout, stderr, mine[3], forker)
+    stdin, stdout, stderr = (os.fdopen(n, m, buffering=0) for n, m in zip(own_ends, ("wb", "rb", "rb"), strict=False))
+    return Child(stdin, stdout, stderr, own_ends[3], forker)
 
 
 def _surroundings() -> tuple[dict[str, str], str]:
@@ -141,29 +141,29 @@ def _surroundings() -> tuple[dict[str, str], str]:
 
 
 def _forker(surroundings: tuple[dict[str, str], str]) -> _Forker:
-    here, there = socket.socketpair()
-    alone = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
-    nothing = subprocess.DEVNULL
-    with there:
+    own_end, child_end = socket.socketpair()
+    one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+    null = subprocess.DEVNULL
+    with child_end:
         process = subprocess.Popen(
-            [sys.executable, "-P", str(SUPERVISOR), str(there.fileno()), *WARM_IMPORTS],
-            stdin=nothing,
-            stdout=nothing,
-            stderr=nothing,
-            pass_fds=[there.fileno()],
-            env={**surroundings[0], **alone},
+            [sys.executable, "-P", str(SUPERVISOR), str(child_end.fileno()), *WARM_IMPORTS],
+            stdin=null,
+            stdout=null,
+            stderr=null,
+            pass_fds=[child_end.fileno()],
+            env={**surroundings[0], **one_thread},
             start_new_session=True,
         )
-    return _Forker(process, here, surroundings)
+    return _Forker(process, own_end, surroundings)
 
 
 def descendants(pid: int) -> list[int]:
     """All descendants of a process; empty if the kernel does not list them."""
-    found, todo = [], deque([pid])
+    pids, todo = [], deque([pid])
     while todo:
-        one = todo.popleft()
+        parent = todo.popleft()
         with suppress(OSError):
-            text = Path(f"/proc/{one}/task/{one}/children").read_text(encoding="ascii")
+            text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
             todo += (new := [int(child) for child in text.split()])
-            found += new
-    return found
+            pids += new
+    return pids

@@ -85,60 +85,64 @@ def converse(module: str, request: bytes, expected: int, limits: Limits) -> tupl
     """
     child = launch.start(module, ADDRESS_SPACE * limits.memory)
     try:
-        lines, stopped, said = _listen(child, request, expected, limits)
+        lines, stopped, stderr = _listen(child, request, expected, limits)
     finally:
         _end(child)
-    return lines, stopped or _crash(child.returncode or 0, said.decode("utf-8", "replace"))
+    return lines, stopped or _crash(child.returncode or 0, stderr.decode("utf-8", "replace"))
 
 
 def _listen(
     child: launch.Child, request: bytes, expected: int, limits: Limits
 ) -> tuple[list[bytes], Failure | None, bytes]:
-    to, answers, errors = child.stdin, child.stdout, child.stderr
+    stdin, answers, errors = child.stdin, child.stdout, child.stderr
     lines: list[bytes] = []
-    line, said, rest = bytearray(), b"", memoryview(request + b"\n")
-    deadline, look = time.monotonic() + START, 0.0
+    line, stderr, unsent = bytearray(), b"", memoryview(request + b"\n")
+    deadline, next_check = time.monotonic() + START, 0.0
     with selectors.DefaultSelector() as ready:
         ready.register(answers, selectors.EVENT_READ)
         ready.register(errors, selectors.EVENT_READ)
-        ready.register(to, selectors.EVENT_WRITE)
+        ready.register(stdin, selectors.EVENT_WRITE)
         while len(lines) <= expected:
-            now, gone = time.monotonic(), child.poll() is not None
+            now, ended = time.monotonic(), child.poll() is not None
             if now >= deadline:
                 within = limits.seconds if lines else START
-                return lines[1:], Failure("timed out", f"no answer within {within:g} s"), said
-            if now >= look:
-                look = now + LOOK
+                return lines[1:], Failure("timed out", f"no answer within {within:g} s"), stderr
+            if now >= next_check:
+                next_check = now + LOOK
                 if (used := _resident(child.pid)) > limits.memory:
                     most = f"the limit is {limits.memory / 2**30:g} GiB"
-                    return lines[1:], Failure("crashed", f"stopped: {used / 2**30:.3g} GiB of memory: {most}"), said
-            events = ready.select(0.0 if gone else min(LOOK, deadline - now))
-            if gone and not any(key.fileobj is not to for key, _ in events):
+                    return lines[1:], Failure("crashed", f"stopped: {used / 2**30:.3g} GiB of memory: {most}"), stderr
+            events = ready.select(0.0 if ended else min(LOOK, deadline - now))
+            if ended and not any(key.fileobj is not stdin for key, _ in events):
                 break  # nothing is left in its pipes
             for key, _ in events:
-                if key.fileobj is to:
-                    rest = _send(to, rest)
-                    if not rest:
-                        ready.unregister(to)
+                if key.fileobj is stdin:
+                    unsent = _send(stdin, unsent)
+                    if not unsent:
+                        ready.unregister(stdin)
                     continue
                 try:
-                    got = os.read(key.fd, 65_536)
+                    received = os.read(key.fd, 65_536)
                 except BlockingIOError:
                     continue
-                if not got:
+                if not received:
                     ready.unregister(key.fileobj)
                 elif key.fileobj is errors:
-                    said = (said + got)[-KEPT:]
+                    stderr = (stderr + received)[-KEPT:]
                 else:
-                    *whole, last = got.split(b"\n")
+                    *whole, last = received.split(b"\n")
                     for part in whole:
                         lines.append(bytes(line) + part)
                         line.clear()
                         deadline = time.monotonic() + limits.seconds
                     line += last
                     if len(line) > LONGEST_LINE:
-                        return lines[1:], Failure("nonsense", f"an answer of more than {LONGEST_LINE >> 20} MiB"), said
-    return lines[1 : expected + 1], None, said
+                        return (
+                            lines[1:],
+                            Failure("nonsense", f"an answer of more than {LONGEST_LINE >> 20} MiB"),
+                            stderr,
+                        )
+    return lines[1 : expected + 1], None, stderr
 
 
 def _send(to: IO[bytes], rest: memoryview) -> memoryview:
@@ -167,14 +171,14 @@ def _end(child: launch.Child) -> None:
 def _resident(pid: int | None) -> int:
     """Resident memory of all descendants of a process, if it has started, bytes."""
     pages = 0
-    for one in launch.descendants(pid) if pid else ():
+    for descendant in launch.descendants(pid) if pid else ():
         with suppress(OSError, IndexError, ValueError):
-            pages += int(Path(f"/proc/{one}/statm").read_text(encoding="ascii").split()[1])
+            pages += int(Path(f"/proc/{descendant}/statm").read_text(encoding="ascii").split()[1])
     return pages * os.sysconf("SC_PAGE_SIZE")
 
 
-def _crash(status: int, said: str) -> Failure:
-    last = (said.strip().splitlines() or [""])[-1].strip()
+def _crash(status: int, stderr: str) -> Failure:
+    last = (stderr.strip().splitlines() or [""])[-1].strip()
     how = f"signal {_signal(-status)}" if status < 0 else f"exit status {status}"
     return Failure("crashed", one_line(f"the code's process ended with {how}" + (f": {last}" if last else "")))
 

@@ -218,10 +218,10 @@ def damped_modes(M: Array, C: Array, K: Array) -> tuple[NDArray[np.complex128], 
     Of each conjugate pair only the eigenvalue with positive imaginary part is returned; sorted by modulus.
     """
     n = len(M)
-    zero, one = np.zeros((n, n)), np.eye(n)
-    found = np.linalg.eig(np.block([[zero, one], [-np.linalg.solve(M, np.hstack([K, C]))]]))
-    values, z = (np.asarray(a, np.complex128) for a in found)
-    kept = values.imag >= -1e-12 * np.abs(values).max(initial=0.0)
-    values, x = values[kept], z[:n, kept]
+    zero, identity = np.zeros((n, n)), np.eye(n)
+    eigenpairs = np.linalg.eig(np.block([[zero, identity], [-np.linalg.solve(M, np.hstack([K, C]))]]))
+    values, z = (np.asarray(a, np.complex128) for a in eigenpairs)
+    upper = values.imag >= -1e-12 * np.abs(values).max(initial=0.0)
+    values, x = values[upper], z[:n, upper]
     order = np.argsort(np.abs(values), kind="stable")
     return values[order], x[:, order]
