@@ -1,5 +1,6 @@
 """HAWC2, BModes and our own TOML: invented files worked out by hand, one blade in two formats, wrong files."""
 
+import re
 import shutil
 from pathlib import Path
 
@@ -164,6 +165,28 @@ def test_bmodes_numbers_are_where_they_belong() -> None:
     assert blade.tip_mass[3:, :3][2, 0] == pytest.approx(-5 * -0.1)  # the first moments of (0.2, −0.1, 0)
     assert blade.tip_mass[3:, :3][1, 2] == pytest.approx(-5 * 0.2)
     assert any("sec_mass_mult = 2, edge_stff_mult = 1.5" in note for note in found.source.notes)
+
+
+def test_bmodes_products_of_inertia_of_the_tip(tmp_path: Path) -> None:
+    """∫ x y dm in axes downwind, to the trailing edge and along the blade; ours are along, to the leading edge, downwind."""
+    shutil.copy(SECTIONS, tmp_path)
+    text = BMI.read_text()
+    for name, product in (("ixy_tip", 0.1), ("izx_tip", 0.2), ("iyz_tip", 0.3)):
+        text = text.replace(f"0.        {name}", f"{product}       {name}")
+    (tmp_path / "tip.bmi").write_text(text)
+    tip = readers.read(tmp_path / "tip.bmi").tip_mass
+    assert (tip[4, 5], tip[3, 5], tip[3, 4]) == pytest.approx((0.1, -0.2, 0.3))
+    np.testing.assert_array_equal(tip, tip.T)
+
+
+def test_bmodes_centres_are_measured_from_the_shear_centres(tmp_path: Path) -> None:
+    shutil.copy(BMI, tmp_path)
+    (tmp_path / SECTIONS.name).write_text(
+        re.sub(r"\t0\.0\t(\S+)$", r"\t0.04\t\1", SECTIONS.read_text(), flags=re.MULTILINE)
+    )
+    centres = sections(readers.read(tmp_path / BMI.name))
+    np.testing.assert_allclose(centres.mass_centre[:, 0], [-0.26, -0.16, -0.06], atol=1e-14)
+    np.testing.assert_allclose(centres.tension_centre[:, 0], [-0.06, -0.01, 0.04], atol=1e-14)
 
 
 def test_bmodes_decks_are_read_as_pybmodes_reads_them() -> None:
