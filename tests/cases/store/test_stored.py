@@ -125,7 +125,7 @@ def test_codes_from_elsewhere_and_of_no_known_version_are_asked_again() -> None:
 
 def test_failures_are_not_kept(kept: Store) -> None:
     for _ in range(2):
-        Stored(Serial(), kept).submit(column(), [], []).result()
+        Stored(Serial(), kept).submit(column(), [1.0], [None]).result()
     assert CALLS == ["code", "code"]
     assert kept.kept() == []
 
