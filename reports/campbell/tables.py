@@ -1,12 +1,15 @@
 """The tables of a Campbell diagram, for the terminal and for Markdown."""
 
 import re
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from rich import box
+from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 from tabulate import tabulate
 
 from ...cases.campbell.diagram import Campbell, Margin
@@ -14,6 +17,7 @@ from ...cases.campbell.encounters import Encounter
 from ...cases.campbell.margins import Southwell
 from ...cases.campbell.sweep import Named
 from ...core.participation import MIXED, spoken
+from ..shared import table_columns
 from ..shared.certain import certain, relative, remarks
 from ..shared.units import Units
 
@@ -209,22 +213,27 @@ def _doubts(diagram: Campbell, units: Units) -> Sheet:
     return Sheet("Ambiguous tracking", head, rows, note)
 
 
-def terminal(sheet: Sheet) -> Table:
-    """The table for the console, with violated margins in red."""
+def terminal(sheet: Sheet, width: int) -> Group:
+    """The table for a console of ``width`` characters, with violated margins in red; continued below if it is wider."""
+    parts = list(table_columns.parts(sheet.head, sheet.rows, width))
+    note = [Text(f"{sheet.note}\n", style="dim italic")] if sheet.note else []
+    return Group(*(_part(sheet, part, part is parts[0]) for part in parts), *note)
+
+
+def _part(sheet: Sheet, part: Sequence[int], first: bool) -> Table:
     out = Table(
         box=box.SIMPLE_HEAD,
-        title=escape(sheet.title),
+        title=escape(sheet.title) if first else None,
         title_justify="left",
         title_style="bold",
-        caption=sheet.note or None,
-        caption_justify="left",
         padding=(0, 1, 0, 0),
         pad_edge=False,
     )
-    for k, head in enumerate(sheet.head):
-        out.add_column(head, justify="left" if k == 0 else "right", overflow="fold")
+    for k in part:
+        fields = [row[k] for row in sheet.rows]
+        table_columns.add_column(out, sheet.head[k], fields, "right" if k else "left")
     for row in sheet.rows:
-        out.add_row(*[_styled(field) for field in row])
+        out.add_row(*[_styled(row[k]) for k in part])
     return out
 
 

@@ -16,6 +16,7 @@ from ...cases.input.errors import CaseError
 from ...cases.input.toml import document
 from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone
 from ...cases.regression.history import Detection, Entry, Point
+from ..shared import table_columns
 from ..shared.markdown import plain, table
 from ..shared.units import RAD_S, Units
 
@@ -135,17 +136,26 @@ def _undetected(control: Detection, units: ByCase) -> Row:
     }
 
 
-def tables(found: Comparison, units: ByCase) -> Iterator[RenderableType]:
-    """All tables, for the terminal or a log, each cut after ``SHOWN`` rows with the number of further ones."""
-    for title, rows in sections(found, units):
-        if len(rows) > SHOWN:
-            title += f": the first {SHOWN} of {len(rows)}"
-        shown = Table(box=box.SIMPLE_HEAD, title=title, title_justify="left", title_style="bold")
-        for head in rows[0]:
-            shown.add_column(head, overflow="fold")
-        for row in rows[:SHOWN]:
-            shown.add_row(*map(escape, row.values()))
-        yield shown
+def tables(found: Comparison, units: ByCase, width: int) -> Iterator[RenderableType]:
+    """All tables for a console of ``width`` characters, each cut after ``SHOWN`` rows with the number of further ones."""
+    for title, every in sections(found, units):
+        heads, rows = list(every[0]), [list(row.values()) for row in every[:SHOWN]]
+        if len(every) > SHOWN:
+            title += f": the first {SHOWN} of {len(every)}"
+        for part in table_columns.parts(heads, rows, width):
+            shown = Table(
+                box=box.SIMPLE_HEAD,
+                title=title,
+                title_justify="left",
+                title_style="bold",
+                padding=(0, 1, 0, 0),
+                pad_edge=False,
+            )
+            for k in part:
+                table_columns.add_column(shown, heads[k], [row[k] for row in rows])
+            for row in rows:
+                shown.add_row(*[escape(row[k]) for k in part])
+            yield shown
 
 
 def markdown(found: Comparison, strict: bool, units: ByCase) -> str:

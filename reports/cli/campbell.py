@@ -293,7 +293,7 @@ def _one(blade: Blade, request: CampbellRequest, omega: float, units: Units) -> 
 def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet]) -> None:
     console = output()
     for sheet in (*tables.sheets(diagram, units), *extra):
-        console.print(tables.terminal(sheet))
+        console.print(tables.terminal(sheet, console.width))
         console.print()
     for line in subject.about:
         console.print(line, style="dim", markup=False)

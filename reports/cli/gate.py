@@ -90,7 +90,7 @@ def command(
     if message := incomplete(run):
         console.print(message, markup=False, soft_wrap=True)
     console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)
-    for shown in gate_text.tables(gate, units):
+    for shown in gate_text.tables(gate, units, console.width):
         console.print(shown)
     if annotations:
         for line in gate_text.annotations(gate, Path(), units):

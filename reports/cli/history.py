@@ -14,6 +14,7 @@ from ...cases.input.errors import CaseError
 from ...cases.regression import history
 from ...cases.regression.history import History
 from ..shared import console
+from ..shared.table_columns import add_column
 from ..shared.writing import writable
 from .arguments import finished
 
@@ -62,12 +63,15 @@ def listing(file: Path, /) -> int:
         History file (`southwell history add`).
     """
     table = Table(box=box.SIMPLE_HEAD)
-    for head in ("commit", "date", "cells", "pass", "fail", "inconclusive", "machine"):
-        table.add_column(head, overflow="fold")
+    rows = []
     for entry in load(file).entries:
         verdicts = [p.verdict for p in entry.cells]
         counts = [str(verdicts.count(v)) for v in ("pass", "fail", "inconclusive")]
-        table.add_row(*map(escape, (entry.commit, entry.date, str(len(verdicts)), *counts, entry.machine)))
+        rows.append((entry.commit, entry.date, str(len(verdicts)), *counts, entry.machine))
+    for k, head in enumerate(("commit", "date", "cells", "pass", "fail", "inconclusive", "machine")):
+        add_column(table, head, [row[k] for row in rows])
+    for row in rows:
+        table.add_row(*map(escape, row))
     console.output().print(table)
     return 0
 

@@ -110,7 +110,7 @@ def modes(
                 console.print(line, markup=False, soft_wrap=True)
             if other:
                 compared = blade_changes(blade, other.blade, at, modes, elements)
-                console.print(tables.terminal(changes_table.sheet(compared, other.blade.name, shown)))
+                console.print(tables.terminal(changes_table.sheet(compared, other.blade.name, shown), console.width))
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
     return PASSED

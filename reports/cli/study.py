@@ -78,7 +78,8 @@ def command(
             parquet.write(out, path, head)
         found = outcome(read(path))
         if summary:
-            output().print(tables.terminal(_sheet(path, asked)))
+            console = output()
+            console.print(tables.terminal(_sheet(path, asked), console.width))
     output().print(f"{out}: {_said(found, head)}", markup=False, soft_wrap=True)
     return FAILED if found.missing else PASSED
 

@@ -1,7 +1,7 @@
 """Tables for the terminal: a run's matrix, its negative controls, and the frequencies of a blade."""
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 
 from rich import box
 from rich.markup import escape
@@ -30,7 +30,7 @@ COLOUR: dict[Verdict, str] = {
 """Colour of each verdict, in addition to sign and number."""
 
 NARROW = 10
-"""Smallest width of a code's column in the matrix, characters."""
+"""Smallest width of a code's column in the matrix, characters; a longer word makes it wider."""
 
 BETWEEN = 2
 """Characters between two columns."""
@@ -41,24 +41,38 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
 
     The columns are split into several tables if they exceed ``width`` characters.
     """
-    names = columns(run.cells, broad)
     cases = [case.replace("/", "/\n ") for case in summary.cases(run)]
     first = max((len(line) for case in (*cases, "shares with core") for line in case.split("\n")), default=0)
-    count = max(1, (width - first - BETWEEN) // (NARROW + BETWEEN))
-    for part in (names[k : k + count] for k in range(0, len(names), count)):
+    heads = {name: re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name) for name in columns(run.cells, broad)}
+    shares = {name: witnesses.shared([c for c in run.cells if broad(c) == name]) for name in heads}
+    widths = {
+        name: max(NARROW, *(len(word) for word in f"{head} {shares[name]}".split())) for name, head in heads.items()
+    }
+    for part in _fitting(widths, width - first - BETWEEN):
         out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
         out.add_column("case", no_wrap=True)
         for name in part:
-            head = re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", escape(name))
-            out.add_column(head, overflow="fold", min_width=NARROW)
+            out.add_column(escape(heads[name]), overflow="fold", min_width=widths[name])
         for case, shown in zip(summary.cases(run), cases, strict=True):
             mine = [c for c in run.cells if c.case == case]
             out.add_row(escape(shown), *[_field([c for c in mine if broad(c) == name]) for name in part])
         if any(c.shares for c in run.cells):
-            shares = [witnesses.shared([c for c in run.cells if broad(c) == name]) for name in part]
             out.add_section()
-            out.add_row("shares with core", *[escape(share).replace(" ", "\n") for share in shares], style="dim")
+            shown = [escape(shares[name]).replace(" ", "\n") for name in part]
+            out.add_row("shares with core", *shown, style="dim")
         yield out
+
+
+def _fitting(widths: Mapping[str, int], width: int) -> Iterator[list[str]]:
+    """Consecutive columns that fit into ``width`` characters, at least one each."""
+    part: list[str] = []
+    for name, own in widths.items():
+        if part and sum(widths[n] + BETWEEN for n in part) + own + BETWEEN > width:
+            yield part
+            part = []
+        part.append(name)
+    if part:
+        yield part
 
 
 def legend() -> str:

@@ -168,7 +168,20 @@ TABLES = {
 """Printed series, and the blade they are about."""
 
 
-NEEDS = ("taper", "twist", "unlike", "coupled", "anisotropic", "hinged", "tip", "thin", "sheared", "curved", "coned", "stations")
+NEEDS = (
+    "taper",
+    "twist",
+    "unlike",
+    "coupled",
+    "anisotropic",
+    "hinged",
+    "tip",
+    "thin",
+    "sheared",
+    "curved",
+    "coned",
+    "stations",
+)
 
 
 def solves(can: Can, asks: Asks) -> bool:

@@ -242,7 +242,7 @@ def test_the_verdict_comes_first_and_tables_are_short_and_in_the_units_of_the_ca
     many = tuple(replace(CELL, mode=k, omega=np.pi, frequency=2.0 * np.pi * k) for k in range(1, 72))
     after = tuple(replace(c, frequency=(c.frequency or 0.0) * (1 + 1e-3)) for c in many)
     found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
-    (table,) = gate_text.tables(found, {CELL.case: BY_KEY["rpm"]})
+    (table,) = gate_text.tables(found, {CELL.case: BY_KEY["rpm"]}, 120)
     assert isinstance(table, Table)
     assert table.row_count == 10
     assert "the first 10 of 71" in str(table.title)

@@ -1,0 +1,55 @@
+"""Columns of tables in the terminal: words are wrapped, numbers and words are never broken.
+
+A table whose columns do not fit is continued below, with its first column repeated.
+"""
+
+import re
+from collections.abc import Iterator, Sequence
+from textwrap import fill
+from typing import Literal
+
+from rich.table import Table
+
+NUMBER = re.compile(r"[^A-Za-z]*|.*\d(e[+-]?\d+)?( ?(rad/s|rpm|Hz|%|m|kg))?|none|far.*")
+"""Text that stays on one line: signs and digits, with an exponent and a unit."""
+
+BETWEEN = 2
+"""Characters between two columns, and at the ends of a table."""
+
+
+def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[list[int]]:
+    """Numbers of consecutive columns that fit into ``width`` characters, each time after the first column."""
+    least = [_least(h, [row[k] for row in rows]) + BETWEEN for k, h in enumerate(head)]
+    part: list[int] = [0]
+    for k in range(1, len(head)):
+        if len(part) > 1 and sum(least[j] for j in part) + least[k] > width:
+            yield part
+            part = [0]
+        part.append(k)
+    yield part
+
+
+def _least(head: str, fields: Sequence[str]) -> int:
+    """Width of a column without broken words."""
+    words = (word for text in (head, *fields) for word in text.split())
+    return max((len(text) for text in (*words, *(fields if _numbers(fields) else ()))), default=1)
+
+
+def _numbers(fields: Sequence[str]) -> bool:
+    return all(NUMBER.fullmatch(field) for field in fields)
+
+
+def add_column(table: Table, head: str, fields: Sequence[str], justify: Literal["left", "right"] = "left") -> None:
+    """Add a column to a table; if all its fields are numbers, only its head is wrapped.
+
+    Args:
+        table: the table.
+        head: of the column.
+        fields: text of all its rows.
+        justify: side at which fields are aligned.
+    """
+    least = _least(head, fields)
+    if _numbers(fields):
+        table.add_column(fill(head, least, break_long_words=False), justify=justify, no_wrap=True)
+    else:
+        table.add_column(head, justify=justify, overflow="fold", min_width=least)
