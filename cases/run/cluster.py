@@ -82,7 +82,7 @@ class _Task(Future[Any]):
 
     def _finish(self, inner: Future[Any]) -> None:
         self.inner = None
-        error = BrokenExecutor("the Dask scheduler is lost") if inner.cancelled() else inner.exception()
+        error: Any = BrokenExecutor("the Dask scheduler is lost") if inner.cancelled() else inner.exception()
         if isinstance(error, import_module("distributed").KilledWorker):
             if self.rounds < ROUNDS and not self.cancelled():
                 self.start()

@@ -25,7 +25,7 @@ from .software import Software
 
 SAFE_PATH = "PYTHONSAFEPATH"
 
-ONE_THREAD = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
+ONE_THREAD: dict[str, str] = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 @contextmanager
@@ -96,8 +96,8 @@ class Processes(ProcessPoolExecutor):
         for process in list((self._processes or {}).values()):
             process.kill()
         if queue := self._result_queue:
-            with suppress(OSError):
-                queue._writer.close()  # else a half-written answer of a killed process would be waited for
+            with suppress(OSError):  # else a half-written answer of a killed process would be waited for
+                queue._writer.close()  # pyright: ignore[reportAttributeAccessIssue]
         self.shutdown(wait=True, cancel_futures=True)
 
 
