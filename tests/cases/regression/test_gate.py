@@ -86,6 +86,14 @@ def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> N
     assert len(installed.new) == 3
 
 
+def test_a_measured_point_that_vanished_does_not_count_and_an_answer_that_became_one_does() -> None:
+    rig = replace(CELL, code="rig", role="measured", verdict="measured")
+    assert compared(BEFORE, replace(BEFORE, cells=(*BEFORE.cells, rig))).passed(strict=True)
+    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict="measured")))
+    assert [g.point.mode for g in found.gone] == [1]
+    assert not found.passed()
+
+
 def test_a_control_that_nobody_catches_any_more_counts() -> None:
     (control,) = BEFORE.controls
     other = replace(BEFORE, controls=(replace(control, detected_by=("another",)),))

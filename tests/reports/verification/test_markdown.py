@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from markdown_it import MarkdownIt
 
-from southwell.cases.judge.results import Run, Setting, read, write
+from southwell.cases.judge.results import Control, Run, Setting, read, write
 from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain
 from southwell.reports.verification import evidence
@@ -259,6 +259,19 @@ def test_modes_of_a_code_with_fewer_effects_are_in_the_row_of_the_mode_with_all_
 )
 def test_the_exit_status_is_0_only_if_all_is_within_target_or_explained(verdicts: list[str], status: int) -> None:
     assert summary.status(Run(tuple(samples.cell(verdict=v, mode=k) for k, v in enumerate(verdicts, 1)))) == status
+
+
+def test_the_exit_status_needs_groups_controls_and_a_foreign_answer() -> None:
+    """One passing code is enough only if no more groups are required, every fault is detected, and it is not core."""
+    alone = Run((samples.cell(shares="nothing"),))
+    fault = Control("frozen frame", "core", "", "+31 %", "beam", 10.0, ("alpha: edgewise 1",), -0.24)
+    two = Setting("beam", "", "", "", "rad_s", groups=2)
+    assert summary.status(alone) == 0
+    assert summary.status(replace(alone, controls=(fault,))) == 0
+    assert summary.status(replace(alone, controls=(replace(fault, detected_by=()),))) == 1
+    assert summary.status(replace(alone, settings=(two,))) == 1
+    assert summary.status(Run((samples.cell(role="discretisation"),))) == 1
+    assert summary.status(Run((samples.cell(shares="everything"),))) == 1
 
 
 def test_a_code_without_an_answer_never_looks_like_a_pass(tmp_path: Path) -> None:
