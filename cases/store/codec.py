@@ -37,7 +37,7 @@ def decode(content: bytes) -> Any:
     """
     try:
         return _decoded(msgspec.json.decode(content))
-    except (msgspec.DecodeError, TypeError, KeyError, AttributeError, zlib.error) as error:
+    except (ValueError, TypeError, KeyError, AttributeError, zlib.error) as error:
         raise ValueError(f"not a stored answer: {error}") from error
 
 

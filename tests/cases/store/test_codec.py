@@ -60,9 +60,7 @@ def test_arrays_come_back_bit_for_bit_and_times_do_not() -> None:
     ],
 )
 def test_what_was_not_written_by_this_package_is_refused(stored: list[Any]) -> None:
-    with pytest.raises(
-        ValueError, match=r"not a stored answer|not a type of this package|not enough values|buffer size"
-    ):
+    with pytest.raises(ValueError, match="not a stored answer"):
         decode(msgspec.json.encode(stored))
 
 
