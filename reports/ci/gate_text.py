@@ -7,10 +7,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import groupby
 from pathlib import Path
 
-from rich import box
 from rich.console import RenderableType
-from rich.markup import escape
-from rich.table import Table
 
 from ...cases.input.errors import CaseError
 from ...cases.input.toml import document
@@ -142,20 +139,7 @@ def tables(found: Comparison, units: ByCase, width: int) -> Iterator[RenderableT
         heads, rows = list(every[0]), [list(row.values()) for row in every[:SHOWN]]
         if len(every) > SHOWN:
             title += f": the first {SHOWN} of {len(every)}"
-        for part in table_columns.parts(heads, rows, width):
-            shown = Table(
-                box=box.SIMPLE_HEAD,
-                title=title,
-                title_justify="left",
-                title_style="bold",
-                padding=(0, 1, 0, 0),
-                pad_edge=False,
-            )
-            for k in part:
-                table_columns.add_column(shown, heads[k], [row[k] for row in rows])
-            for row in rows:
-                shown.add_row(*[escape(row[k]) for k in part])
-            yield shown
+        yield from table_columns.tables(heads, rows, width, title)
 
 
 def markdown(found: Comparison, strict: bool, units: ByCase) -> str:

@@ -2,14 +2,12 @@
 
 from collections import Counter
 
-from rich import box
-from rich.table import Table
-
 from ...cases.conformance.suite import CHECKS, FOR_MECHANISMS
 from ...cases.conformance.worker import outcomes
 from ...references.protocol.description import describe
 from ...references.protocol.registry import ADVICE, UnknownCodeError
 from ..shared.console import output
+from ..shared.table_columns import tables
 
 MARKS = {"pass": "✔", "fail": "✘", "not applicable": "–", "not run": "○"}
 
@@ -29,15 +27,11 @@ def command(code: str, /) -> int:
     if known.failure and known.failure.reason.startswith("import: "):
         why = known.failure.reason.removeprefix("import: ")
         raise UnknownCodeError(f"code: {code!r} cannot be loaded: {why}: {ADVICE}")
-    table = Table(box=box.SIMPLE_HEAD)
-    for head in ("", "check", "law, or reason"):
-        table.add_column(head, overflow="fold")
     checks = (*(CHECKS if known.blades else ()), *(FOR_MECHANISMS if known.mechanisms else ()))
     found = outcomes(code, checks if not known.failure else CHECKS)
-    for outcome in found:
-        table.add_row(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law)
+    rows = [(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law) for outcome in found]
     console = output()
-    console.print(table, markup=False)
+    console.print(*tables(("", "check", "law, or reason"), rows, console.width), sep="\n")
     tally = Counter(outcome.verdict for outcome in found)
     counted = ", ".join(f"{tally[verdict]} {verdict}" for verdict in MARKS if tally[verdict])
     console.print(f"{known.title or known.name}: {counted}", markup=False)

@@ -6,15 +6,12 @@ from pathlib import Path
 from typing import Annotated
 
 from cyclopts import App, Parameter
-from rich import box
-from rich.markup import escape
-from rich.table import Table
 
 from ...cases.input.errors import CaseError
 from ...cases.regression import history
 from ...cases.regression.history import History
 from ..shared import console
-from ..shared.table_columns import add_column
+from ..shared.table_columns import tables
 from ..shared.writing import writable
 from .arguments import finished
 
@@ -62,17 +59,14 @@ def listing(file: Path, /) -> int:
     file
         History file (`southwell history add`).
     """
-    table = Table(box=box.SIMPLE_HEAD)
     rows = []
     for entry in load(file).entries:
         verdicts = [p.verdict for p in entry.cells]
         counts = [str(verdicts.count(v)) for v in ("pass", "fail", "inconclusive")]
         rows.append((entry.commit, entry.date, str(len(verdicts)), *counts, entry.machine))
-    for k, head in enumerate(("commit", "date", "cells", "pass", "fail", "inconclusive", "machine")):
-        add_column(table, head, [row[k] for row in rows])
-    for row in rows:
-        table.add_row(*map(escape, row))
-    console.output().print(table)
+    out = console.output()
+    head = ("commit", "date", "cells", "pass", "fail", "inconclusive", "machine")
+    out.print(*tables(head, rows, out.width), sep="\n")
     return 0
 
 

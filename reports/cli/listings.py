@@ -1,12 +1,10 @@
 """``southwell cases`` and ``southwell codes``: lists, and installation of codes in isolated environments."""
 
 import sys
+from collections.abc import Sequence
 from pathlib import Path
 
 from cyclopts import App
-from rich import box
-from rich.table import Table
-from rich.text import Text
 
 from ...cases.input import library
 from ...cases.input.errors import nearest
@@ -18,29 +16,33 @@ from ...references.protocol import registry as registry
 from ...references.protocol.description import describe
 from ..shared import console
 from ..shared.statuses import PASSED
+from ..shared.table_columns import tables
 from .arguments import RESULTS, finished
 from .errors import UsageError
 
 
 def cases() -> int:
     """List the cases that come with the package."""
-    table = Table(box=box.SIMPLE_HEAD)
-    for head in ("case", "what", "blades", "speeds"):
-        table.add_column(head, overflow="fold")
+    rows = []
     found, absent = library.everything()
     for name in library.names():
         if name in absent:
-            table.add_row(name, absent[name], "", "")
+            rows.append((name, absent[name], "", ""))
             continue
         known = found[name]
         first, *_ = settings(known)
         blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
-        table.add_row(name, known.text.title, blades, first.facts["speeds"])
+        rows.append((name, known.text.title, blades, first.facts["speeds"]))
     for name in library.mechanisms():
         about = mechanism_case.setting(mechanism_case.case(library.mechanism(name)))
-        table.add_row(name, about.title, "mechanism", about.facts["speeds"])
-    console.output().print(table)
+        rows.append((name, about.title, "mechanism", about.facts["speeds"]))
+    _print(("case", "what", "blades", "speeds"), rows)
     return PASSED
+
+
+def _print(head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    out = console.output()
+    out.print(*tables(head, rows, out.width), sep="\n")
 
 
 code_app = App(name="codes", result_action="return_value")
@@ -60,19 +62,14 @@ def codes(*, pages: Path | None = None) -> int:
 
         print(code_pages.write(finished(pages / RESULTS), pages))
         return PASSED
-    table = Table(box=box.SIMPLE_HEAD)
-    for head in ("code", "title", "version", "shares with core", "omits"):
-        table.add_column(head, overflow="fold")
+    rows = []
     for known in describe(registry.names()):
         found = f"✔ {known.version}" if known.version else f"○ not found; {known.hint}"
-        table.add_row(
-            known.name,
-            known.title,
-            Text(f"✘ {known.failure.reason}" if known.failure else found),
-            known.shares,
-            ", ".join(known.effects.lacks()) or "nothing",
+        omitted = ", ".join(known.effects.lacks()) or "nothing"
+        rows.append(
+            (known.name, known.title, f"✘ {known.failure.reason}" if known.failure else found, known.shares, omitted)
         )
-    console.output().print(table)
+    _print(("code", "title", "version", "shares with core", "omits"), rows)
     return PASSED
 
 

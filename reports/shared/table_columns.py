@@ -8,10 +8,15 @@ from collections.abc import Iterator, Sequence
 from textwrap import fill
 from typing import Literal
 
+from rich import box
+from rich.markup import escape
 from rich.table import Table
 
 NUMBER = re.compile(r"[^A-Za-z]*|.*\d(e[+-]?\d+)?( ?(rad/s|rpm|Hz|%|m|kg))?|none|far.*")
 """Text that stays on one line: signs and digits, with an exponent and a unit."""
+
+LONG = 20
+"""Characters of a word, such as a path, that may be broken."""
 
 BETWEEN = 2
 """Characters between two columns, and at the ends of a table."""
@@ -29,10 +34,28 @@ def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Ite
     yield part
 
 
+def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title: str | None = None) -> Iterator[Table]:
+    """A table of plain text for a console of ``width`` characters; ``title`` is repeated where it is continued."""
+    for part in parts(head, rows, width):
+        out = Table(
+            box=box.SIMPLE_HEAD,
+            title=escape(title) if title else None,
+            title_justify="left",
+            title_style="bold",
+            padding=(0, 1, 0, 0),
+            pad_edge=False,
+        )
+        for k in part:
+            add_column(out, head[k], [row[k] for row in rows])
+        for row in rows:
+            out.add_row(*(escape(row[k]) for k in part))
+        yield out
+
+
 def _least(head: str, fields: Sequence[str]) -> int:
-    """Width of a column without broken words."""
-    words = (word for text in (head, *fields) for word in text.split())
-    return max((len(text) for text in (*words, *(fields if _numbers(fields) else ()))), default=1)
+    """Width of a column without broken words, except long ones."""
+    words = [min(len(word), LONG) for text in (head, *fields) for word in text.split()]
+    return max([*words, *(len(field) for field in fields if _numbers(fields))], default=1)
 
 
 def _numbers(fields: Sequence[str]) -> bool:
