@@ -35,13 +35,9 @@ class Confirmed:
 
 
 def speeds(diagram: Campbell) -> tuple[float, ...]:
-    """Speeds (rad/s) at which lines are confirmed.
-
-    These are the requested speeds nearest the ends of the operating range, or the first and the last without a range.
-    """
-    asked = np.array(diagram.request.speeds)
-    ends = diagram.request.operating or (asked[0], asked[-1])
-    return tuple(sorted({float(asked[np.abs(asked - end).argmin()]) for end in ends}))
+    """Speeds (rad/s) at which lines are confirmed: the ends of the operating range, or the first and the last speed."""
+    asked = diagram.request.speeds
+    return tuple(sorted(set(diagram.request.operating or (asked[0], asked[-1]))))
 
 
 def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:

@@ -3,7 +3,7 @@
 import warnings
 from collections import deque
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache
 
 import numpy as np
@@ -24,6 +24,9 @@ from .tracking import Solver, Tracks, track
 SPARE = 4
 """Number of modes solved above those requested, so that each finds its successor."""
 
+
+ROUNDING = 1e-9
+"""Distance of two speeds, relative to the highest, that is due to the conversion of units."""
 
 _ROUNDS = 8  # of inserting speeds between which a mode may meet n per revolution twice
 
@@ -137,6 +140,7 @@ def campbell(blade: Blade, request: CampbellRequest, solve: Solver | None = None
             steady state.
     """
     _check(request)
+    request = _on_speeds(request)
     weight = weights(blade)
     solve = cache(solve or solver(blade, request))
     tracks = _tracks(solve, request, weight)
@@ -158,8 +162,11 @@ def campbell(blade: Blade, request: CampbellRequest, solve: Solver | None = None
 
 
 def _tracks(solve: Solver, request: CampbellRequest, weight: Array) -> Tracks:
-    """The tracks, with speeds inserted where a mode may meet n per revolution twice between two solved speeds."""
-    tracks = track(solve, request.speeds, weight, request.modes)
+    """The tracks, also at the ends of the operating range.
+
+    Speeds are inserted where a mode may meet n per revolution twice between two solved speeds.
+    """
+    tracks = track(solve, request.speeds, weight, request.modes, request.operating or ())
     for _ in range(_ROUNDS):
         more = near_crossings([line_of(tracks, t) for t in range(tracks.count)], request.per_rev)
         if not more:
@@ -168,13 +175,26 @@ def _tracks(solve: Solver, request: CampbellRequest, weight: Array) -> Tracks:
     return tracks
 
 
+def _on_speeds(request: CampbellRequest) -> CampbellRequest:
+    """The request with the ends of the operating range on the speeds that they equal to rounding."""
+    if not request.operating:
+        return request
+    asked = np.array(request.speeds)
+    nearest = [float(asked[np.abs(asked - end).argmin()]) for end in request.operating]
+    low, high = (
+        speed if abs(speed - end) <= ROUNDING * asked[-1] else end
+        for speed, end in zip(nearest, request.operating, strict=True)
+    )
+    return replace(request, operating=(low, high))
+
+
 def _check(request: CampbellRequest) -> None:
     speeds = request.speeds
     if len(speeds) < 2:
         raise CaseError(f"speeds: {len(speeds)} given: a diagram needs two at least; give a range first:last:step")
     if request.operating:
         low, high = request.operating
-        if not (speeds[0] <= low * (1 + 1e-9) and low <= high <= speeds[-1] * (1 + 1e-9)):
+        if not (speeds[0] <= low + ROUNDING * speeds[-1] and low <= high <= speeds[-1] * (1 + ROUNDING)):
             raise CaseError(
                 f"operating range: {low:g} to {high:g} rad/s is not within the speeds, {speeds[0]:g} to {speeds[-1]:g} rad/s: "
                 "widen the speeds, or correct the range"

@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.text import Text
 from scipy.special import jn_zeros
 
+from southwell.cases.campbell import confirmation
 from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell
 from southwell.cases.campbell.prestress import STANDARD_GRAVITY, gravity
 from southwell.cases.campbell.sweep import sweep
@@ -111,6 +112,17 @@ def test_a_margin_is_judged_by_what_the_user_asks() -> None:
     for margin, kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
         (found,) = (m for m in diagram(margin=margin, per_rev=(1,)).margins if m.track == 0)
         assert found.kept is kept
+
+
+def test_lines_are_confirmed_at_the_stated_ends_of_the_operating_range() -> None:
+    """With 6.9:12.1 rpm they once were confirmed at 6.6 rpm, the nearest requested speed."""
+    found = diagram(operating=(1.03, 1.97))
+    assert confirmation.speeds(found) == (1.03, 1.97)
+    assert {1.03, 1.97} <= set(found.tracks.omega.tolist())
+    assert confirmation.speeds(diagram(operating=None)) == (0.0, 4.0)
+    nearly = diagram(operating=(1.0 + 1e-12, 2.0 - 1e-12))
+    assert confirmation.speeds(nearly) == (1.0, 2.0)
+    assert len(set(nearly.tracks.omega.tolist())) == len(set(np.round(nearly.tracks.omega, 9)))
 
 
 def test_an_operating_range_from_rest_and_one_of_a_single_speed() -> None:
