@@ -6,6 +6,7 @@ import pytest
 from hypothesis import settings
 
 from southwell.tests.support.guesses import every_steady_state_again
+from southwell.tests.support.importable import importable
 from southwell.tests.support.keeping import keeping
 
 os.environ.setdefault("SOUTHWELL_FRESH", "1")  # no test takes an answer that an earlier one has stored
@@ -27,4 +28,4 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = [item for item in items if item not in set(left)]
 
 
-__all__ = ["every_steady_state_again", "keeping"]
+__all__ = ["every_steady_state_again", "importable", "keeping"]

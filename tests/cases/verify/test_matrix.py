@@ -40,11 +40,7 @@ stiffness = "body_fixed"
 """
 
 
-@pytest.fixture(autouse=True)
-def importable(monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = str(Path(__file__).parents[2] / "support")
-    monkeypatch.setenv("PYTHONPATH", folder)
-    monkeypatch.syspath_prepend(folder)
+pytestmark = pytest.mark.usefixtures("importable")
 
 
 @pytest.fixture

@@ -17,11 +17,7 @@ BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, 
 RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
 
 
-@pytest.fixture(autouse=True)
-def importable(monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = str(Path(__file__).parents[2] / "support")
-    monkeypatch.setenv("PYTHONPATH", folder)
-    monkeypatch.syspath_prepend(folder)
+pytestmark = pytest.mark.usefixtures("importable")
 
 
 def ask(attribute: str, timeout: float = 60.0) -> list[Modes | Failure]:

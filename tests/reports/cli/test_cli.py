@@ -54,13 +54,6 @@ def beam(tmp_path: Path) -> Path:
     return path
 
 
-@pytest.fixture
-def importable(monkeypatch: pytest.MonkeyPatch) -> None:
-    folder = str(Path(__file__).parents[2] / "support")
-    monkeypatch.setenv("PYTHONPATH", folder)
-    monkeypatch.syspath_prepend(folder)
-
-
 def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
     """Status, standard output and standard error."""
     with pytest.raises(SystemExit) as ended:

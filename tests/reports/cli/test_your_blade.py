@@ -1,7 +1,6 @@
 """A blade file from the command line: changes, margins as a status, verification without a case file."""
 
 import re
-import shlex
 from io import StringIO
 from pathlib import Path
 
@@ -13,22 +12,14 @@ from southwell.cases.campbell.tracked import TrackedMode
 from southwell.cases.judge import results
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
-from southwell.reports.cli import app as cli
 from southwell.reports.cli import show
 from southwell.reports.shared.units import RPM
 from southwell.reports.verification import terminal
 
+from .test_cli import southwell
+
 DECK = Path(__file__).parents[3] / "examples" / "nrel-5mw-blade.dat"
 BLADE = f"{DECK} --length 61.5 --hub-radius 1.5"
-
-
-def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
-    """Status, standard output and standard error."""
-    with pytest.raises(SystemExit) as ended:
-        cli.main(shlex.split(arguments))
-    out, err = capsys.readouterr()
-    assert isinstance(ended.value.code, int)
-    return ended.value.code, out, err
 
 
 def test_a_heavier_blade_is_slower_by_the_square_root(capsys: pytest.CaptureFixture[str]) -> None:
