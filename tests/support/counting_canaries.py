@@ -10,7 +10,7 @@ from southwell.references.protocol.interface import CORE
 
 CASE = "canary"
 
-STANDINGS = ("agrees", "known difference", "estimate", "open", "disagrees")
+STANDINGS = ("agrees", "coarse", "known difference", "estimate", "open", "disagrees")
 
 
 def _cell(code: str, **changes: Any) -> Cell:

@@ -141,7 +141,7 @@ def test_a_lost_pool_worker_is_no_interruption(
 
     monkeypatch.setattr(matrix, "run", lost)
     with pytest.raises(SystemExit) as ended:
-        cli.main(["verify", case.path, "--faults", "none", "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
+        cli.main(["verify", case.path, "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
     said = capsys.readouterr().err
     assert ended.value.code == INCOMPLETE
     assert "a worker process was killed" in said
