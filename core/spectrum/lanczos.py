@@ -204,7 +204,12 @@ def _massive(p: TreePencil) -> tuple[Array, Array]:
     lumps = np.zeros((len(lever) + 1, 6, 6))
     np.add.at(lumps, links.parent, p.M[:, :6, :6] - on_b)
     lumps[1:] += np.swapaxes(lever, 1, 2) @ on_b @ lever
-    massive = np.linalg.pinv(lumps, hermitian=True) @ lumps
+    inertia = np.diagonal(lumps, axis1=1, axis2=2)
+    unit = 1.0 / np.sqrt(
+        np.where(inertia > 0, inertia, 1.0)
+    )  # in which inertias are 1, whatever the units of mass and length
+    scaled = unit[:, :, None] * lumps * unit[:, None, :]
+    massive = unit[:, :, None] * (np.linalg.pinv(scaled, hermitian=True) @ scaled) / unit[:, None, :]
     for k in np.flatnonzero(links.clamped.any(axis=(1, 2))):  # a joint's ends move together
         massive[[links.parent[k], k + 1]] = np.eye(6)
     return massive[1:], lever

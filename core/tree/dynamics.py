@@ -17,9 +17,12 @@ from ..mechanism.description import Load, MechanismError, Spring
 from ..space import spatial as sp
 from ..space.inertia import transformed
 from .kinematics import Kinematics, carried, projected
+from .scales import length_at
 from .topology import Batch, Tree
 
 Array = NDArray[np.float64]
+
+_STEADY = 1e-9  # change of a beam's motion, as a fraction of its rate, in units of the mechanism's length
 
 
 @dataclass(frozen=True)
@@ -221,7 +224,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     (xa, ya, aa), (xb, yb, _) = _state(k, a, batch.at_a), _state(k, b, batch.at_b)
     massive = batch.beams.inner > 0
     if massive:
-        _check_steady(tree, batch, ya, yb, aa)
+        _check_steady(tree, batch, length_at(tree, k.poses), ya, yb, aa)
     to_a = sp.adjoint(sp.inverse(xa))
     frame = (to_a @ ya[..., None])[..., 0]
     fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
@@ -249,9 +252,10 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     out.add(ends, bm.Pencil(residual, back @ M @ local, back @ C @ local, back @ K @ local, spring))
 
 
-def _check_steady(tree: Tree, batch: Batch, ya: Array, yb: Array, aa: Array) -> None:
-    scale = np.maximum(np.abs(ya).max(1), 1e-30)
-    bad = (np.abs(yb - ya).max(1) > 1e-9 * scale) | (np.abs(aa).max(1) > 1e-9 * scale**2)
+def _check_steady(tree: Tree, batch: Batch, length: float, ya: Array, yb: Array, aa: Array) -> None:
+    unit = np.repeat([length, 1.0], 3)
+    rate, opening, acceleration = (np.abs(y / unit).max(1) for y in (ya, yb - ya, aa))
+    bad = (opening > _STEADY * rate) | (acceleration > _STEADY * rate**2)
     if bad.any():
         beam = tree.mechanism.beams[batch.index[int(bad.argmax())]]
         raise MechanismError(

@@ -22,8 +22,9 @@ from ...core.tree.spanning import compile_tree
 from ...core.tree.topology import Tree
 from ..protocol.interface import CORE, CodeError, Independence, MechanismAdapter, MechanismModes
 from ..protocol.quadratic import damped_modes
+from ..protocol.rescaling import in_own_length
 from . import system as ex
-from .loops import System, own_coordinates, system, velocity
+from .closure import System, own_coordinates, system, velocity
 
 Array = NDArray[np.float64]
 
@@ -100,13 +101,17 @@ class ExudynMechanism(MechanismAdapter):
         Raises:
             CodeError: a periodic mechanism, no steady state near the guess, or loops that move in it.
         """
-        stages = linearize(compile_tree(mechanism), guess)
-        _check_constant(compile_tree(mechanism), stages)
-        null = stages.null
-        values, x = damped_modes(*stages.reduced(null))
-        shapes = np.zeros((len(values), len(stages.q)), np.complex128)
-        shapes[:, stages.free] = (null @ x).T
-        return MechanismModes(stages.coordinates, stages.q, values, shapes)
+        return in_own_length(mechanism, guess, _modes)
+
+
+def _modes(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    stages = linearize(compile_tree(mechanism), guess)
+    _check_constant(compile_tree(mechanism), stages)
+    null = stages.null
+    values, x = damped_modes(*stages.reduced(null))
+    shapes = np.zeros((len(values), len(stages.q)), np.complex128)
+    shapes[:, stages.free] = (null @ x).T
+    return MechanismModes(stages.coordinates, stages.q, values, shapes)
 
 
 def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:

@@ -19,6 +19,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.mechanism.description import Mechanism
 from ..protocol.interface import CodeError, Independence, MechanismAdapter, MechanismModes, extra
 from ..protocol.quadratic import damped_modes
+from ..protocol.rescaling import in_own_length
 from .plant import Plant, Tangent
 from .spanning import spanning
 
@@ -94,11 +95,15 @@ class PinocchioMechanism(MechanismAdapter):
         Raises:
             CodeError: a periodic mechanism, no steady state near the guess, or loops that move in it.
         """
-        found = linearize(mechanism, guess)
-        values, x = damped_modes(found.M, found.C, found.K)
-        shapes = np.zeros((len(values), len(found.q)), np.complex128)
-        shapes[:, found.free] = (found.null @ x).T
-        return MechanismModes(found.names, found.q, values, shapes)
+        return in_own_length(mechanism, guess, _modes)
+
+
+def _modes(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    found = linearize(mechanism, guess)
+    values, x = damped_modes(found.M, found.C, found.K)
+    shapes = np.zeros((len(values), len(found.q)), np.complex128)
+    shapes[:, found.free] = (found.null @ x).T
+    return MechanismModes(found.names, found.q, values, shapes)
 
 
 def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:

@@ -8,10 +8,13 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from southwell.core import blade as bl
-from southwell.core.blade import Blade, BladeError, section_mass, section_stiffness
+from southwell.core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
 from southwell.core.blade_checks import body_fault
 from southwell.core.element.beams import bushing
+from southwell.core.element.discretize import discretize
 from southwell.core.solve import modes
+from southwell.core.spectrum import lanczos
+from southwell.core.tree.pencil import linearize, undeformed
 
 from ..support.units import in_units, random_blade
 
@@ -111,3 +114,16 @@ def test_a_bushing_without_symmetry_is_refused_in_any_unit(metre: float) -> None
     powers = np.add.outer(np.repeat([0, 1], 3), np.repeat([0, 1], 3))
     with pytest.raises(ValueError, match="symmetric"):
         bushing(np.eye(4), metre**powers * stiffness)
+
+
+@pytest.mark.parametrize("metre", [1e-4, 1e-2, 1.0])
+def test_directions_with_mass_do_not_depend_on_the_unit_of_length(metre: float) -> None:
+    """Thin blade with lumped masses: rotation about its axis has a millionth of the inertia of the others, and counts."""
+    blade = uniform_blade("thin", 10.0, 1.0, EA=1e9, GJ=1e4, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=1e-7, I_z=1e-7)
+    mesh = discretize(in_units(blade, 1.0, metre, 1.0), 8, "half_end", "body_fixed")
+    pencil = linearize(mesh, undeformed(mesh), 0.0, np.zeros(3))
+    massive, _ = lanczos._massive(pencil)
+    unit = np.repeat([1.0, metre], 3)
+    ranks = np.round(np.trace(massive, axis1=1, axis2=2))
+    np.testing.assert_array_equal(ranks, 6.0)
+    np.testing.assert_allclose(massive * unit[:, None] / unit, np.tile(np.eye(6), (8, 1, 1)), atol=1e-6)

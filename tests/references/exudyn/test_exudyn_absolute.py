@@ -13,7 +13,7 @@ from southwell.core.mechanism.joints import SCREWS
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.references.exudyn import system as ex
-from southwell.references.exudyn.loops import System
+from southwell.references.exudyn.closure import System
 from southwell.references.exudyn.mechanism import CODE
 from southwell.references.protocol.quadratic import damped_modes
 

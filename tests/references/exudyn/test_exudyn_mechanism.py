@@ -20,7 +20,7 @@ from southwell.core.spectrum import modal
 from southwell.core.tree import dynamics
 from southwell.core.tree.spanning import compile_tree
 from southwell.references.exudyn import mechanism as em
-from southwell.references.exudyn.loops import system
+from southwell.references.exudyn.closure import system
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.linkages import (
     FOUR,

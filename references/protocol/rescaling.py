@@ -1,21 +1,23 @@
-"""Units of a mechanism: its numbers in other units of mass, length and time, and the units in which they are of order one.
+"""A mechanism's numbers in other units of mass, length and time.
 
 Angles are in rad in all units. Written u = (L, L, L, 1, 1, 1), the unit of a twist's component is u/T, and that of entry ij of
 an inertia is M L²/(u_i u_j).
 """
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-from southwell.core.element.beams import Beams
-from southwell.core.element.measures import StrainLaw
-from southwell.core.mechanism.description import Beam, Body, CoordinateSpring, Load, Mechanism, Spring
-from southwell.core.mechanism.joints import Joint
-from southwell.core.mechanism.length import coordinate_units, length_of
-from southwell.core.mechanism.motion import Motion, MotionLaw
+from ...core.element.beams import Beams
+from ...core.element.measures import StrainLaw
+from ...core.mechanism.description import Beam, Body, CoordinateSpring, Load, Mechanism, Spring
+from ...core.mechanism.joints import Joint
+from ...core.mechanism.length import coordinate_units, length_of
+from ...core.mechanism.motion import Motion, MotionLaw
+from .interface import MechanismModes
 
 Array = NDArray[np.float64]
 
@@ -56,22 +58,22 @@ class RescaledLaw:
         return RescaledLaw(self.law.deriv(m), self.value / self.time**m, self.time)
 
 
-def own_units(mechanism: Mechanism) -> Units:
-    """The units in which a mechanism without beams has a length and a mass of 1, and the sum of its squared rates is 1.
+def in_own_length(
+    mechanism: Mechanism,
+    guess: Mapping[str, float],
+    solve: Callable[[Mechanism, Mapping[str, float]], MechanismModes],
+) -> MechanismModes:
+    """The modes of a mechanism, solved in a unit of length of the order of its own: tolerances on lengths are relative.
 
-    Its rates are those of its motions, and those that gravity and its springs and dampers give to its mass; 1/s if it has none.
+    The unit is a power of two, so that the numbers are not rounded.
     """
-    length = length_of(mechanism)
-    units = coordinate_units(mechanism, length)
-    mass = sum(float(b.inertia[0, 0] + np.trace(b.inertia[3:, 3:]) / length**2) for b in mechanism.bodies) or 1.0
-    squares = [float(np.linalg.norm(mechanism.gravity)) / length]
-    squares += [(m.rate / units[m.coordinate]) ** 2 for m in mechanism.motions]
-    for s in mechanism.springs:
-        squares += [s.stiffness / mass, (s.damping / mass) ** 2]
-    for c in mechanism.coordinate_springs:
-        inertia = mass * (length / units[c.coordinate]) ** 2
-        squares += [c.stiffness / inertia, (c.damping / inertia) ** 2]
-    return Units(mass, length, 1.0 / np.sqrt(sum(map(abs, squares)) or 1.0))
+    length = 2.0 ** round(np.log2(length_of(mechanism)))
+    unit = coordinate_units(mechanism, length)
+    modes = solve(
+        in_units(mechanism, Units(length=length)), {name: q / unit.get(name, 1.0) for name, q in guess.items()}
+    )
+    units = np.array([unit[name] for name in modes.coordinates])
+    return replace(modes, steady=modes.steady * units, shapes=modes.shapes * units)
 
 
 def in_units(mechanism: Mechanism, units: Units) -> Mechanism:
