@@ -24,6 +24,9 @@ Verdict = Literal[
 ]
 Unit = Literal["rad_s", "rpm", "gamma"]
 
+RESULTS = "results.jsonl"
+"""The file of a complete run, in its output folder."""
+
 
 @dataclass(frozen=True)
 class Cell:

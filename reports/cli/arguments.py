@@ -10,14 +10,12 @@ from cyclopts import Parameter, Token
 from cyclopts.validators import Number
 
 from ...cases.input.errors import CaseError
+from ...cases.input.writing import writable
 from ...cases.judge import results
-from ...cases.judge.results import Run
+from ...cases.judge.results import RESULTS, Run
 from ...cases.run.cluster import SLURM
 from ...cases.store import unfinished
-from ..shared.writing import writable
 from .errors import IncompleteError, UsageError
-
-RESULTS = "results.jsonl"
 
 
 def _whole(_: type, tokens: Sequence[Token]) -> int:

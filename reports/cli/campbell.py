@@ -21,8 +21,9 @@ from ...cases.campbell.tracking import Solver
 from ...cases.input.changes import parse
 from ...cases.input.default_case import default_case
 from ...cases.input.errors import CaseError
+from ...cases.input.writing import writable
 from ...cases.run.executors import Processes
-from ...cases.verify import matrix
+from ...cases.verify import matrix, measurements
 from ...core.blade import Blade
 from ...core.modes import Modes
 from ...references.protocol import registry
@@ -38,9 +39,7 @@ from ..shared import pdf as as_pdf
 from ..shared.console import Watch, output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units
-from ..shared.writing import writable
 from . import campbell_options as options
-from . import measured
 from .arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
 from .errors import UsageError
 from .mounting import Mounting
@@ -146,8 +145,8 @@ def command(
         as_pdf.require()
     given = options.speeds(rpm, omega)
     mount = (mounting or Mounting()).mount()
-    files = [measured.user_results(text, measured.defaults(data_uncertainty, None)) for text in add]
-    measured.check(files, data_uncertainty, None)
+    files = [measurements.user_results(text, measurements.defaults(data_uncertainty, None)) for text in add]
+    measurements.check(files, data_uncertainty, None)
     subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])
     other = single(against, mount) if against else None
     kept = True

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...cases.campbell import prestress
 from ...cases.input.errors import CaseError
-from ...cases.input.schema import speed_range
+from ...cases.verify import request
 from ...core.blade import Blade
 from ..shared.units import RAD_S, RPM, Units
 from .mounting import angle
@@ -17,15 +17,8 @@ MOST_PER_REV = 1000
 
 def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
     """Rotor speeds (rad/s) and their unit; None if neither option is given."""
-    if rpm is not None and omega is not None:
-        raise CaseError(f"--rpm {rpm} and --omega {omega}: the speed is given twice: give one of them")
-    if rpm is None and omega is None:
-        return None
-    option, text, units = ("--rpm", rpm or "", RPM) if omega is None else ("--omega", omega, RAD_S)
-    try:
-        return tuple((speed_range(text) / units.speeds).tolist()), units
-    except ValueError as error:
-        raise CaseError(f"{option}: {error}") from error
+    found = request.speeds(rpm, omega)
+    return found and (found[0], RPM if found[1] else RAD_S)
 
 
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:

@@ -11,11 +11,11 @@ from ...cases.condense import condensed, condensing
 from ...cases.condense.condensed import Condensed
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
+from ...cases.input.writing import writable
 from ..condense import page
 from ..shared.console import output
 from ..shared.statuses import PASSED
 from ..shared.units import RAD_S
-from ..shared.writing import writable
 from . import campbell_options
 from .arguments import NumberOfModes
 

@@ -11,6 +11,7 @@ from cyclopts.validators import Number
 
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError, nearest
+from ...cases.input.writing import writable
 from ...cases.judge.results import Run
 from ...cases.regression import history
 from ...cases.regression.gate import MOVED, Comparison, compare, misses, nothing, within
@@ -22,7 +23,6 @@ from ..shared.log_safe import commands
 from ..shared.statuses import FAILED, INCOMPLETE, PASSED
 from ..shared.summary import incomplete
 from ..shared.units import BY_KEY, Units
-from ..shared.writing import writable
 from ..verification import report as matrix_report
 from .arguments import RESULTS, finished, found
 from .history import load

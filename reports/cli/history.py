@@ -8,11 +8,11 @@ from typing import Annotated
 from cyclopts import App, Parameter
 
 from ...cases.input.errors import CaseError
+from ...cases.input.writing import writable
 from ...cases.regression import history
 from ...cases.regression.history import History
 from ..shared import console
 from ..shared.table_columns import tables
-from ..shared.writing import writable
 from .arguments import finished
 
 app = App(name="history", help="Record the results of runs by commit.", result_action="return_value")

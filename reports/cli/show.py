@@ -14,12 +14,12 @@ from rich.table import Table
 
 from ...cases.input import atomic
 from ...cases.input.properties import sections
+from ...cases.input.writing import writable
 from ...core.blade import Blade
 from ..campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
 from ..shared import not_used
 from ..shared.console import output
 from ..shared.paths import file_name
-from ..shared.writing import writable
 from .mounting import Mounting
 from .subjects import subjects as find_subjects
 

@@ -8,6 +8,7 @@ from typing import Annotated
 from cyclopts import Parameter
 from msgspec import UNSET
 
+from ...cases.input.writing import writable
 from ...cases.run.executors import executor
 from ...cases.study import parquet
 from ...cases.study.journal import JournalError, StudyJournal, read
@@ -22,7 +23,6 @@ from ..shared import not_used
 from ..shared.console import Counter, output
 from ..shared.statuses import FAILED, INCOMPLETE, INTERRUPTED, PASSED
 from ..shared.units import RAD_S, RPM
-from ..shared.writing import writable
 from .arguments import Workers, cluster_workers
 from .errors import UsageError
 

@@ -1,45 +1,13 @@
 """``southwell verify``: solves cases with every code, compares and judges the results, and writes a report."""
 
-import os
-import shlex
-import shutil
-import sys
-from collections.abc import Sequence
-from contextlib import ExitStack
-from dataclasses import replace
 from pathlib import Path
 
-from ...cases.faults import table
-from ...cases.input import atomic
-from ...cases.input.changes import parse
-from ...cases.input.library import is_blade_file
-from ...cases.input.readers import Mount
-from ...cases.input.schema import Case
-from ...cases.judge.results import Run, Setting
-from ...cases.run.executors import executor
-from ...cases.run.software import Software
-from ...cases.store.unfinished import Unfinished
-from ...cases.verify import matrix, user_results
-from ...cases.verify import names as names_of
-from ...cases.verify.settings import NOT_USED, settings
-from ...references.protocol import launch, registry, store
-from ...references.protocol.description import describe
+from ...cases.verify.pipeline import verify
+from ...cases.verify.request import Execution, Request
 from ...references.protocol.process import Limits
-from ...references.protocol.store import Store
-from ..ci import junit as xml
-from ..shared import summary
-from ..shared.statuses import INCOMPLETE
-from ..shared.writing import writable
-from . import campbell_options, measured
-from .arguments import CONTINUE, Changes, Count, Positive, Workers, cluster_workers, writing
-from .errors import UsageError
+from .arguments import Changes, Count, Positive, Workers, cluster_workers
 from .mounting import Mounting
-from .report import show
-from .verify_cases import Decks, case_of, changed, everything
-from .verify_run import SCRATCH, Stopped, said, solve
-
-SHARES = 8
-"""Largest number of tasks for the seeded faults on a cluster, whose number of workers may change."""
+from .verify_output import Output, status
 
 
 def command(
@@ -111,97 +79,21 @@ def command(
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     """
-    count = cluster_workers(workers, scheduler)
-    kept_before = _store(fresh)
-    with ExitStack() as early:
-        if kept_before:
-            early.callback(kept_before.close)
-        launch.prepare()  # for ``describe``, while the cases are read
-        decks = Decks(campbell_options.speeds(rpm, omega), (mounting or Mounting()).mount())
-        given = [parse(text) for text in changes]
-        wanted = [case_of(name, decks) for name in dict.fromkeys(case)] if case else everything()
-        chosen = [changed(one, given) for one in wanted]
-        if not any(is_blade_file(name) for name in case) and (decks.speeds or decks.mount != Mount()):
-            raise UsageError(
-                "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
-            )
-        names = list(dict.fromkeys(codes.split(","))) if codes is not None else list(registry.names())
-        blades = [v for c in chosen if isinstance(c, Case) for v in c.variants]
-        known = describe(names, [v.blade for v in blades])
-        defaults = measured.defaults(data_uncertainty, input_uncertainty)
-        files = [measured.user_results(text, defaults) for text in add]
-        measured.check(files, data_uncertainty, input_uncertainty)
-        names_of.unique(chosen, known, files)
-        user_results.check(files, blades, [c.name for c in known])
-        options = [*(["--codes", codes] if codes else []), *(word for text in add for word in ("--add", text))]
-        options += [*(["--data-uncertainty", data_uncertainty] if data_uncertainty else [])]
-        options += [*(["--input-uncertainty", input_uncertainty] if input_uncertainty else [])]
-        plain = not (rpm or omega or changes or decks.mount != Mount())
-        line = ["southwell", "verify", *case, *options] if plain else ["southwell", *sys.argv[1:]]
-        about = Run(
-            cells=(),
-            versions=matrix.versions(known, files),
-            command=shlex.join(line),
-            settings=tuple(_required(s, witnesses, codes is None) for c in chosen for s in settings(c)),
-        )
-        seeded = _shared_out(table.chosen(faults), count or SHARES)
-        for setting in about.settings:
-            if NOT_USED in setting.facts:
-                print(f"southwell: {setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}", file=sys.stderr)
-        limits = {"seconds": time_limit, "memory": int(memory_limit * 2**30), "reuse": kept_before is not None}
-        software = Software(
-            tuple(sorted({c.distribution for c in known} - {""})), tuple(c.asked for c in known if not c.failure)
-        )
-        with writing(out), ExitStack() as started:
-            started.callback(shutil.rmtree, out / SCRATCH, ignore_errors=True)  # after the processes have ended
-            pool = started.enter_context(executor(count, scheduler, (out / SCRATCH).resolve(), software, _report))
-            with writable(f"--out {out}"):
-                opened = Unfinished(out)
-            with opened as kept:
-                run, stopped = solve(
-                    chosen, known, files, about, kept, out, pool, started.close, seeded, limits, kept_before
-                )
-                try:
-                    if run.cells:
-                        show(run, out, None if stopped or scheduler else pool)
-                        if junit:
-                            with writable(f"--junit {junit}", "file"):
-                                atomic.write(junit, xml.render(run))
-                except OSError as error:
-                    stopped = stopped or Stopped(said(error), INCOMPLETE)
-                if not stopped:
-                    kept.remove()
-                    return summary.status(run)
-    what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
-    print(f"southwell: {stopped.what}: {what}; {CONTINUE}", file=sys.stderr)
-    return stopped.status
-
-
-def _required(setting: Setting, witnesses: int | None, whole: bool) -> Setting:
-    """The setting with the required number of groups: as given, or as in the case if all codes take part."""
-    if witnesses is None and whole:
-        return setting
-    return replace(setting, groups=witnesses or 0, lacking="")
-
-
-def _store(fresh: bool) -> Store | None:
-    """Open the store of answers; None if it is not wanted, which the processes of codes learn too, or cannot be used."""
-    if fresh:
-        os.environ[store.FRESH] = "1"
-    if os.environ.get(store.FRESH):
-        return None
-    try:
-        return store.users()
-    except OSError as error:
-        print(f"southwell: the store of answers is not used: {said(error)}", file=sys.stderr)
-        return None
-
-
-def _shared_out(names: Sequence[str], parts: int) -> list[Sequence[str]]:
-    """Distribute faults over tasks; neighbours stay together, because they are tried on the same case."""
-    size = -(-len(names) // parts)
-    return [names[k : k + size] for k in range(0, len(names), size)] if names else []
-
-
-def _report(line: str) -> None:
-    print(f"southwell: {line}", file=sys.stderr)
+    execution = Execution(cluster_workers(workers, scheduler), scheduler, out=out, fresh=fresh)
+    request = Request(
+        subjects=case,
+        codes=None if codes is None else tuple(codes.split(",")),
+        rpm=rpm,
+        omega=omega,
+        mount=(mounting or Mounting()).mount(),
+        changes=changes,
+        add=add,
+        data_uncertainty=data_uncertainty,
+        input_uncertainty=input_uncertainty,
+        faults=faults,
+        witnesses=witnesses,
+        time_limit=time_limit,
+        memory_limit=memory_limit,
+        execution=execution,
+    )
+    return status(verify(request, Output(out, junit)))

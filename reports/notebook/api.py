@@ -1,7 +1,6 @@
 """``southwell.read``, ``.modes``, ``.campbell`` and ``.verify``."""
 
 from collections.abc import Sequence
-from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack
 from math import radians
 from pathlib import Path
@@ -17,14 +16,14 @@ from ...cases.input.default_case import MODES, default_case
 from ...cases.input.errors import CaseError
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case, speed_range
-from ...cases.judge.results import Run
-from ...cases.verify import matrix
+from ...cases.verify import pipeline
+from ...cases.verify.request import Execution, Request
 from ...core import solve
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
-from ...references.protocol import registry
+from ...references.protocol.process import Limits
 from ..shared.units import RAD_S, RPM, Units
 from .results import CampbellResult, ModesResult, VerifyResult
 
@@ -180,7 +179,15 @@ def verify(
     omega: Speeds | None = None,
     codes: Sequence[str] | None = None,
     modes: int = MODES,
+    changes: Sequence[str] = (),
+    add: Sequence[str] = (),
+    faults: str = "none",
+    witnesses: int | None = None,
+    time_limit: float | None = None,
+    memory_limit: float = Limits.memory / 2**30,
     workers: int = 2,
+    out: str | Path | None = None,
+    fresh: bool = False,
 ) -> VerifyResult:
     """Solve a blade with every code, and compare and judge the results mode by mode against the in-house solver.
 
@@ -190,24 +197,44 @@ def verify(
         omega: rotor speeds in rad/s, instead.
         codes: names (``southwell codes``); by default all. Codes that are not installed are reported as not run.
         modes: number of modes of a blade to compare, from the lowest.
+        changes: changes of the blade's properties, ``"EI_flap=*1.1"``.
+        add: results of other programs or measurements, ``"NAME=FILE.csv"``.
+        faults: seeded faults: ``fast``, ``all``, ``none``, or names separated by commas. Each alters this package for seconds;
+            do not use it in other threads meanwhile.
+        witnesses: number of independent groups that must confirm the blade; by default as the case says, none with ``codes``.
+        time_limit: seconds for one solution by another code.
+        memory_limit: memory in GiB for one solution by another code.
         workers: number of codes that run at the same time.
+        out: folder for results.jsonl, where a run that was stopped continues.
+        fresh: compute every answer again instead of taking those of earlier runs from the store.
+
+    A speed without a steady state has cells that fail with the reason.
 
     Raises:
-        CaseError: no speeds for a blade, speeds for a case, or a blade that the in-house solver cannot solve.
+        CaseError: no speeds for a blade, speeds for a case, or a bad option.
         UnknownCodeError: a code that is not known.
     """
-    with ThreadPoolExecutor(workers) as executor:
-        run: Run = matrix.run([_case(blade, rpm, omega, modes)], codes or registry.names(), executor)
-    return VerifyResult(run)
+    request = Request(
+        subjects=(_case(blade, rpm, omega, modes),),
+        codes=None if codes is None else tuple(codes),
+        changes=tuple(changes),
+        add=tuple(add),
+        faults=faults,
+        witnesses=witnesses,
+        time_limit=time_limit,
+        memory_limit=memory_limit,
+        execution=Execution(workers, threads=True, out=None if out is None else Path(out), fresh=fresh),
+    )
+    return VerifyResult(pipeline.verify(request))
 
 
-def _case(blade: Blade | str, rpm: Speeds | None, omega: Speeds | None, modes: int) -> Case:
+def _case(blade: Blade | str, rpm: Speeds | None, omega: Speeds | None, modes: int) -> Case | str:
     if isinstance(blade, Blade):
         speeds, units = _speeds(rpm, omega)
         return default_case(blade, speeds.tolist(), rpm=units is RPM, source="given in Python", modes=modes)
     if rpm is not None or omega is not None:
         raise CaseError(f"{blade}: a case has its own speeds: leave out rpm and omega, or give a blade")
-    return library.select(blade)
+    return blade
 
 
 def _speeds(rpm: Speeds | None, omega: Speeds | None) -> tuple[Array, Units]:

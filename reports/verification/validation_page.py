@@ -9,6 +9,7 @@ from cyclopts import Parameter
 from matplotlib.figure import Figure
 
 from ...cases.input import atomic
+from ...cases.input.writing import writable
 from ...cases.judge.measured import COVERAGE
 from ...cases.validation import comparison, rotating_beams, sandia34
 from ...cases.validation.comparison import Simulated
@@ -16,7 +17,6 @@ from ...cases.validation.points import Point
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house, svg
-from ..shared.writing import writable
 from . import validation_beams
 from .validation_tables import by_line, every
 

@@ -1,5 +1,7 @@
 """What a notebook gets: the same numbers as core's, in tables and figures that show themselves."""
 
+from pathlib import Path
+
 import matplotlib as mpl
 import numpy as np
 import pytest
@@ -7,6 +9,7 @@ from matplotlib.axes import Axes
 
 import southwell
 from southwell.cases.input.errors import CaseError
+from southwell.cases.judge import results
 from southwell.core import solve
 
 mpl.use("agg")
@@ -94,3 +97,13 @@ def test_what_cannot_be_is_one_line(call, phrase: str, blade: southwell.Blade) -
         call(blade)
     assert phrase in str(raised.value)
     assert "\n" not in str(raised.value)
+
+
+def test_a_verification_has_faults_limits_and_a_folder(blade: southwell.Blade, tmp_path: Path) -> None:
+    """A time that is too short for any code makes its cells inconclusive; a seeded fault is detected; results are written."""
+    asked = {"omega": OMEGA, "codes": ["exact-beam"], "modes": 1, "faults": "no hub radius", "out": tmp_path}
+    result = southwell.verify(blade, **asked, time_limit=1e-3)
+    timed_out = [c for c in result.run.cells if c.code == "exact-beam"]
+    assert {(c.verdict, c.frequency) for c in timed_out} == {("inconclusive", None)}
+    assert [(c.control, bool(c.detected_by)) for c in result.run.controls] == [("no hub radius", True)]
+    assert results.read(tmp_path / "results.jsonl") == result.run

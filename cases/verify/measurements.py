@@ -4,8 +4,8 @@ import re
 from collections.abc import Sequence
 from pathlib import Path
 
-from ...cases.verify.user_results import Defaults, UserResults, read
-from .errors import UsageError
+from ..input.errors import CaseError
+from .user_results import Defaults, UserResults, read
 
 
 def defaults(data: str | None, inputs: str | None) -> Defaults:
@@ -20,9 +20,9 @@ def _percent(option: str, text: str) -> float:
     try:
         value = float(text.removesuffix("%")) / 100.0
     except ValueError:
-        raise UsageError(f"{option}: {text!r} is not a percentage: give one standard uncertainty, as in 1%") from None
+        raise CaseError(f"{option}: {text!r} is not a percentage: give one standard uncertainty, as in 1%") from None
     if not 0.0 < value <= 1.0:
-        raise UsageError(
+        raise CaseError(
             f"{option}: {text!r}: needs more than 0 and at most 100 %: give one standard uncertainty, as in 1%"
         )
     return value
@@ -32,12 +32,11 @@ def user_results(text: str, u: Defaults) -> UserResults:
     """Read the file of one ``--add``.
 
     Raises:
-        UsageError: if it does not have the form NAME=FILE.csv.
-        CaseError: if the file cannot be used.
+        CaseError: if it does not have the form NAME=FILE.csv, or the file cannot be used.
     """
     name, equals, path = text.partition("=")
     if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
-        raise UsageError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
+        raise CaseError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
     return read(name, Path(path), u)
 
 
@@ -45,10 +44,10 @@ def check(files: Sequence[UserResults], data: str | None, inputs: str | None) ->
     """Reject an uncertainty option that applies to no file.
 
     Raises:
-        UsageError: if an uncertainty is given and no file has measurements.
+        CaseError: if an uncertainty is given and no file has measurements.
     """
     for option, given in (("--data-uncertainty", data), ("--input-uncertainty", inputs)):
         if given is not None and not any(one.measured for one in files):
-            raise UsageError(
+            raise CaseError(
                 f"{option}: {given}: no file of --add has measured frequencies: name their column 'measured [Hz]'"
             )

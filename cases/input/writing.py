@@ -3,7 +3,7 @@
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-from ...cases.input.errors import CaseError
+from .errors import CaseError
 
 
 @contextmanager

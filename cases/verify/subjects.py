@@ -1,0 +1,88 @@
+"""The cases of a request: by name, from files, or made of blade files, with changed properties if asked."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+from msgspec.structs import replace as replaced
+
+from ..input import changes as blade_changes
+from ..input import library, mechanisms, readers
+from ..input.changes import Change
+from ..input.default_case import default_case
+from ..input.errors import CaseError
+from ..input.library import is_blade_file
+from ..input.readers import Mount
+from ..input.schema import Case
+from . import mechanism_case
+from .mechanism_case import MechanismCase
+from .request import Request, speeds
+
+
+def cases(request: Request, note: Callable[[str], None]) -> list[Case | MechanismCase]:
+    """The cases of a request; ``note`` is called with one line for each that is not run.
+
+    Raises:
+        CaseError: for a subject that cannot be read, or an option that does not apply to it.
+    """
+    decks = speeds(request.rpm, request.omega)
+    edits = [blade_changes.parse(text) for text in request.changes]
+    asked = request.subjects
+    subjects = [s for k, s in enumerate(asked) if not isinstance(s, str) or s not in asked[:k]] or _everything(note)
+    chosen = [_changed(_case(subject, decks, request.mount), edits) for subject in subjects]
+    if not any(isinstance(s, str) and is_blade_file(s) for s in subjects) and (decks or request.mount != Mount()):
+        raise CaseError(
+            "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
+        )
+    return chosen
+
+
+def _case(
+    subject: str | Case | MechanismCase, decks: tuple[tuple[float, ...], bool] | None, mount: Mount
+) -> Case | MechanismCase:
+    """A case of blades or of a mechanism, by name or file; or the default case of a blade file."""
+    if not isinstance(subject, str):
+        return subject
+    if is_blade_file(subject):
+        return _of_blade_file(subject, decks, mount)
+    if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
+        return mechanism_case.case(library.mechanism(subject))
+    return library.select(subject)
+
+
+def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case:
+    reading = readers.reading(Path(name), mount)
+    source = reading.source
+    own = () if reading.speed is None else (reading.speed,)
+    at, rpm = decks or (own, True)
+    blade = reading.mounted(Path(name)) if decks is None or any(at) else reading.blade
+    if not at:
+        raise CaseError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")
+    files = ", ".join(path.name for path in source.files)
+    about = (f"{source.format}: {files}", f"axes: {source.axes}", *source.notes)
+    return default_case(blade, at, rpm=rpm, source="; ".join(about), unused=source.unused)
+
+
+def _changed(case: Case | MechanismCase, edits: Sequence[Change]) -> Case | MechanismCase:
+    """The case with changed blade properties and without printed tables, which no longer apply."""
+    if not edits:
+        return case
+    if not isinstance(case, Case):
+        raise CaseError(f"--set {edits[0]}: {case.name} is a mechanism, not a blade: leave it out")
+    what = "changed: " + ", ".join(str(change) for change in edits)
+    text = replaced(
+        case.text,
+        title=f"{case.text.title}; {what}",
+        compare=replaced(case.text.compare, tables=()),
+        discretisation=None,
+    )
+    variants = tuple(replace(v, blade=blade_changes.apply(v.blade, edits)) for v in case.variants)
+    return replace(case, text=text, variants=variants)
+
+
+def _everything(note: Callable[[str], None]) -> tuple[Case | MechanismCase, ...]:
+    """Every case and mechanism whose files are present."""
+    present, absent = library.everything()
+    for name, why in absent.items():
+        note(f"{name}: not run: {why}")
+    return (*present.values(), *(mechanism_case.case(library.mechanism(name)) for name in library.mechanisms()))
