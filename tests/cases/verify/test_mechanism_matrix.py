@@ -57,9 +57,11 @@ def test_every_code_at_every_speed(name: str, column: str) -> None:
     assert {c.family for c in found} == {"flap", "lag" if name == "hinged-blade" else "pitch"}
 
 
-def reference():
+def reference() -> mechanism_columns.Reference:
     (turning,) = mechanism_case.case(library.mechanism("hinged-blade")).variants
-    return mechanism_columns.references(turning)[ALL_EFFECTS][2]
+    core = mechanism_columns.references(turning)[ALL_EFFECTS][2]
+    assert isinstance(core, mechanism_columns.Reference)
+    return core
 
 
 def reported(change) -> list:
