@@ -31,7 +31,7 @@ from ..judge.results import Cell, Verdict
 from ..judge.uncertainty import ROUNDING
 from ..judge.verdict import judge, unsigned
 from .cells import Head, empty, failed
-from .columns import Column, Rows, failing_work
+from .columns import Column, Rows, failing_work, not_installed
 from .mechanism_case import MechanismCase, Turning
 
 _BY_HAND = Independence(
@@ -88,7 +88,8 @@ def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
         head = Head(case.name, code.name, code.version or "", "same discretisation", case.target, code.shares)
-        work, solves = _work(head, variant, code, limits), code.mechanisms and not code.failure
+        work = _work(head, variant, code, limits)
+        solves = code.mechanisms and not code.failure and code.version is not None
         out.append(Column(code.name, ALL_EFFECTS, head, work, code.independence, solves=solves))
     if form := variant.described.text.closed_form:
         known = f"southwell {version('southwell')}"
@@ -103,6 +104,8 @@ def _work(head: Head, variant: Turning, code: Description, limits: Limits) -> Wo
         return failing_work(head, code.failure)
     if not code.mechanisms:
         return partial(_absent, head, "not applicable", "the code takes blades, not mechanisms")
+    if code.version is None:
+        return failing_work(head, not_installed(code))
     return partial(
         _compared, head, variant, partial(_ask, code.asked, code.version or "", variant.described.guess, limits)
     )

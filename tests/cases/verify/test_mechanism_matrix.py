@@ -18,7 +18,7 @@ from southwell.cases.verify.columns import columns as blade_columns
 from southwell.cases.verify.mechanism_columns import cells
 from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import boundary, registry, wire, worker
-from southwell.references.protocol.description import describe
+from southwell.references.protocol.description import Description, describe
 from southwell.references.protocol.interface import MechanismAdapter, MechanismModes
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
@@ -244,6 +244,14 @@ def test_more_modes_than_a_mechanism_has_are_told(tmp_path: Path) -> None:
     core = mechanism_columns.references(mechanism_case.case(mechanisms.read(path)).variants[0])
     failure = Failure("no reference", "compare.modes: 3: the mechanism has 2 modes: reduce it")
     assert core[ALL_EFFECTS] == [failure] * 4
+
+
+def test_a_code_that_is_not_installed_is_not_run_where_core_has_no_reference_either() -> None:
+    case = mechanism_case.case(library.mechanism("hinged-blade"))
+    absent = Description("absent", "absent", mechanisms=True, blades=False, hint="pip install absent")
+    column, *_ = mechanism_columns.columns(case, [absent], Limits())
+    (cell,) = column([10.0], [Failure("no reference", "no steady state")])[0]
+    assert (cell.verdict, cell.reason) == ("not run", "not installed: pip install absent")
 
 
 def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
