@@ -88,7 +88,7 @@ class _Task(Future[Any]):
                 self.start()
                 return
             died = self.rounds * (error.allowed_failures + 1)
-            error = BrokenExecutor(f"{died} workers died while they had the same task, probably out of memory")
+            error = BrokenExecutor(f"{died} workers crashed on the same task, probably out of memory")
         if not self.set_running_or_notify_cancel():  # cancelled
             return
         if error is None:

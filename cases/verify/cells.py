@@ -108,7 +108,9 @@ def _extra(reference: Reference, answer: Modes, refined_modes: Sequence[RefinedM
     paired = {one.mode for one in pair(wanted.reference, answer, every, wanted.weight)}
     top = max((answer.frequencies[m.partner.mode] for m in refined_modes if m.partner.mode is not None), default=0.0)
     extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in paired and f < top]
-    return f"modes at {', '.join(extra)} rad/s are none of core's: spurious, or missing in core?" if extra else ""
+    return (
+        f"modes at {', '.join(extra)} rad/s do not match any core mode: spurious, or missed by core?" if extra else ""
+    )
 
 
 def _unrefined(answers: Sequence[Modes]) -> str:

@@ -73,7 +73,8 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     wrong = np.abs(unit - unit.T).max()
     if wrong > SYMMETRY_TOLERANCE:
         raise CondensationError(
-            f"{where}: not symmetric (by {wrong:.1e}): one triangle only, or rows and columns in different orders?"
+            f"{where}: not symmetric (by {wrong:.1e}): supply both triangles with equal entries, and rows and "
+            "columns in the same order"
         )
     lowest = np.linalg.eigvalsh(unit)[0]
     if lowest < -SYMMETRY_TOLERANCE:

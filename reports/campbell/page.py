@@ -52,7 +52,7 @@ def write(
     folder.mkdir(parents=True, exist_ok=True)
     name, k = diagram.blade.name, shapes_at(diagram)
     drawn = {
-        "campbell": figures.draw(diagram, units, f"{name}: natural frequencies along rotor speed", user_results),
+        "campbell": figures.draw(diagram, units, f"{name}: natural frequencies versus rotor speed", user_results),
         "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
         "span": span.draw(diagram.blade),
     }
@@ -94,7 +94,7 @@ def _page(diagram: Campbell, k: int, units: Units, command: str, origin: Origin,
         f"{tables.verdict(diagram, units)}\n",
         *[f"{line}.\n" for line in tables.notes(diagram, units)],
         cover.cover(origin),
-        "![Natural frequencies along rotor speed](campbell.svg)\n",
+        "![Natural frequencies versus rotor speed](campbell.svg)\n",
         *[tables.markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],
         *([] if any(sheet.title == CONFIRMATION for sheet in extra) else [NOT_VERIFIED]),
         *(["![Modes that come close](encounters.svg)\n"] if diagram.encounters else []),

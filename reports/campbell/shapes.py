@@ -86,7 +86,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 axes.set_xlabel("fraction of span", size=8, labelpad=2)
             else:
                 axes.set_xticklabels([])
-        turns = f"torsion: rotation × radius of gyration, {arm:.3g} m" if arm else "torsion has no mass in this blade"
+        turns = f"torsion: rotation × radius of gyration, {arm:.3g} m" if arm else "no torsional inertia in this file"
         title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest displacement 1; {turns}")
         handles = [
             Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flapwise", "edgewise")
@@ -96,7 +96,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 Line2D([], [], color=FAMILY_COLOURS["torsion"], ls=DASHES["torsion"], lw=1.6, label="torsion")
             )
         if np.abs(shapes.imag * [0.0, 1.0, 1.0, arm]).max() > LAGGING:
-            handles.append(Line2D([], [], color=MUTED, ls=(0, (1, 2)), lw=1.0, label="a quarter period late"))
+            handles.append(Line2D([], [], color=MUTED, ls=(0, (1, 2)), lw=1.0, label="90° out of phase"))
         key(figure, handles, 0.065)
     return figure
 

@@ -15,7 +15,7 @@ ROTATIONS = (".rx", ".ry", ".rz")
 
 
 def modes(found: Solution, title: str) -> Table:
-    """The table of modes: frequency, damping ratio and dominant coordinate, without digits lost to rounding."""
+    """The table of modes: frequency, damping ratio and dominant coordinate, without digits dominated by rounding error."""
     out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
     for head in ("mode", "rad/s", "Hz", "damping ratio", "± rounding"):
         out.add_column(head, justify="right")

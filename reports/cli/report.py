@@ -14,7 +14,7 @@ from .arguments import RESULTS, found, writing
 def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     """Rewrite the report of a finished run from its results.jsonl.
 
-    Of a run that was stopped, what there is of it is shown, with status 3; the report of an earlier complete run is kept.
+    A stopped run is shown as far as it got, with status 3; the report of an earlier complete run is kept.
 
     Parameters
     ----------

@@ -54,7 +54,8 @@ def command(
     add
         `NAME=FILE.csv`: results of another program as one more column; may be repeated. Columns of the file: `speed [rpm]` (or
         rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number). Measurements have `measured [Hz]`
-        instead of `frequency [Hz]`, and `uncertainty [%]`: they show how far the model is from the data, and decide nothing.
+        instead of `frequency [Hz]`, and `uncertainty [%]`: they show how far the model is from the data, and do not
+        affect the verdict.
     data_uncertainty
         Standard uncertainty of measured frequencies without one in the file: `1%`.
     input_uncertainty

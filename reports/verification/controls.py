@@ -37,7 +37,7 @@ def overview(run: Run) -> list[dict[str, str]]:
             "size": control.size,
             "outcome": said(control),
             "largest difference": percent(control.change) if control.change is not None else "",
-            "noticed by": _named(control.detected_by),
+            "detected by": _named(control.detected_by),
         }
         for control in run.controls
     ]

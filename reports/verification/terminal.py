@@ -84,7 +84,7 @@ def legend() -> str:
 def controls(run: Run) -> Table:
     """The table of negative controls, one row per seeded fault."""
     out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-    for head in ("seeded fault", "in", "outcome", "largest difference", "noticed by"):
+    for head in ("seeded fault", "in", "outcome", "largest difference", "detected by"):
         out.add_column(head, overflow="fold")
     for control, row in zip(run.controls, faults.overview(run), strict=True):
         first = control.detected_by[0] if control.detected_by else ""

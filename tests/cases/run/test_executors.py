@@ -141,7 +141,7 @@ def test_a_task_that_kills_every_worker_ends_the_run(tmp_path: Path) -> None:
     ):
         error = pool.submit(deadly, task).exception(120)
         assert isinstance(error, BrokenExecutor)
-        assert "3 workers died while they had the same task" in str(error)
+        assert "3 workers crashed on the same task" in str(error)
         assert pool.submit(stub, task).result(120) == stub(task)
 
 

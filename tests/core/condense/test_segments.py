@@ -178,7 +178,7 @@ def put(k: Array, entry: tuple[int, int], value: float) -> Array:
     [
         (lambda k: k[:11, :11], r"shape \(11, 11\), expected \(12, 12\)"),
         (lambda k: put(k, (3, 4), np.nan), r"not finite at index \[3, 4\]"),
-        (lambda k: put(k, (1, 5), 1.1 * k[1, 5]), "not symmetric .*: one triangle only"),
+        (lambda k: put(k, (1, 5), 1.1 * k[1, 5]), "not symmetric .*: supply both triangles"),
         (lambda k: np.triu(k), "not symmetric"),
         (lambda k: -k, "diagonal .* not positive semi-definite"),
         (

@@ -169,7 +169,7 @@ def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fracti
     for k, name in enumerate(("flapwise 1", "edgewise 1", "flapwise 2")):
         assert f"{name}   {found.tracks.frequencies[0, k] / (2 * np.pi):.4g} Hz" in texts
     assert "100 % flapwise" in texts
-    assert "a quarter period late" in texts  # edge lags by 0.3 rad in these oscillators
+    assert "90° out of phase" in texts  # edge lags by 0.3 rad in these oscillators
 
 
 def test_csv_holds_the_shapes(found: Campbell, tmp_path: Path) -> None:
