@@ -34,19 +34,20 @@ LAGGING = 0.02
 """Smallest imaginary part of a shape that is drawn."""
 
 
-def scaled(diagram: Campbell, k: int) -> tuple[list[int], Complex]:
+def scaled(diagram: Campbell, k: int, arm: float = 0.0) -> tuple[list[int], Complex]:
     """The tracks at speed number ``k`` by frequency, and their shapes, complex (m, 21, 4), in the blade's axes.
 
-    Each shape is scaled so that the largest displacement component of any point is 1 m, real and positive.
+    Each shape is scaled so that the largest component of any point is 1 m, real and positive: of the displacements, and of
+    the rotation times ``arm`` (m).
     """
     tracks = diagram.tracks
     there = np.flatnonzero(tracks.place[k] >= 0)
     order = there[np.argsort(tracks.place[k, there])]
     shapes = in_blade_axes(tracks.solved[k], diagram.blade)[tracks.place[k, order]]
-    size = np.abs(shapes[:, :, :3])
-    farthest = size.reshape(len(order), -1).argmax(1)
-    station, column = np.unravel_index(farthest, size.shape[1:])
-    pivot = shapes[np.arange(len(order)), station, column]
+    motions = shapes * [1.0, 1.0, 1.0, arm]
+    farthest = np.abs(motions).reshape(len(order), -1).argmax(1)
+    station, column = np.unravel_index(farthest, motions.shape[1:])
+    pivot = motions[np.arange(len(order)), station, column]
     return order.tolist(), shapes * (np.exp(-1j * np.angle(pivot)) / np.abs(pivot))[:, None, None]
 
 
@@ -54,10 +55,11 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
     """Draw one panel per mode: flapwise, edgewise and torsional motion along the span, at speed number ``k``.
 
     Torsion is shown as rotation times the blade's radius of gyration: the square of each line, weighted with mass, is
-    its fraction of the kinetic energy. Dotted lines are the part of a motion that lags by a quarter period.
+    its fraction of the kinetic energy. At the end of its line is the rotation in degrees. Dotted lines are the part of a motion
+    that is 90° out of phase.
     """
-    order, shapes = scaled(diagram, k)
     arm = gyration(diagram.blade)
+    order, shapes = scaled(diagram, k, arm)
     rows = -(-len(order) // ACROSS)
     with house():
         low, panel = 0.75, 1.9
@@ -86,8 +88,10 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 axes.set_xlabel("fraction of span", size=8, labelpad=2)
             else:
                 axes.set_xticklabels([])
-        turns = f"torsion: rotation × radius of gyration, {arm:.3g} m" if arm else "no torsional inertia in this file"
-        title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest displacement 1; {turns}")
+        turns = "no torsional inertia in this file"
+        if arm:
+            turns = f"torsion: 1 is {np.degrees(1.0 / arm):.3g}°, 1 m of arc at the radius of gyration, {arm:.3g} m"
+        title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest motion 1 m; {turns}")
         handles = [
             Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flapwise", "edgewise")
         ]
@@ -119,8 +123,9 @@ def _panel(axes: Axes, shape: Complex, arm: float) -> None:
         ends.append((float(line[-1].real), family))
     heights = spread([y for y, _ in ends], 0.24)
     for y, (value, family) in zip(heights, ends, strict=True):
+        text = f"{np.degrees(value / arm):+.2g}°" if family == "torsion" else f"{value:+.2f}"
         axes.annotate(
-            f"{value:+.2f}".replace("-", "−") if abs(value) >= 0.005 else "0",
+            text.replace("-", "−") if abs(value) >= 0.005 else "0",
             (1.0, y),
             (4, 0),
             textcoords="offset points",

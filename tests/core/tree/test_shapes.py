@@ -172,6 +172,23 @@ def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fracti
     assert "90° out of phase" in texts  # edge lags by 0.3 rad in these oscillators
 
 
+def test_no_line_leaves_its_panel_and_torsion_is_in_degrees() -> None:
+    """A torsion mode moves its axis little: scaled by displacements alone, its rotation once left the panel."""
+    blade = uniform_blade("torsion", 1.0, 0.1, EA=1e6, GJ=1.0, EI_y=1e4, EI_z=2e4, mass=1.0, I_y=1e-2, I_z=1e-2)
+    drawn = campbell(blade, CampbellRequest((0.0, 1.0), modes=2, elements=12))
+    figure = draw(drawn, 1, RPM, "torsion: mode shapes")
+    assert drawn.labels.at(0, 1.0).startswith("torsion")
+    for axes in figure.axes:
+        low, high = axes.get_ylim()
+        for line in axes.lines:
+            values = np.asarray(line.get_ydata(), float)
+            assert (values >= low).all()
+            assert (values <= high).all()
+    texts = [t.get_text() for t in figure.axes[0].findobj(Text)]  # type: ignore[attr-defined]
+    radius = np.sqrt(2e-2)
+    assert f"{np.degrees(1.0 / radius):+.2g}°" in texts
+
+
 def test_csv_holds_the_shapes(found: Campbell, tmp_path: Path) -> None:
     with write_csv(found, 1, tmp_path).open() as file:
         rows = list(csv.DictReader(file))
