@@ -175,7 +175,7 @@ def command(
         if other:
             found = blade_changes(subject.blade, other.blade, speeds, modes, elements)
             extra.append(changes_table.sheet(found, other.blade.name, units))
-        about = options.loads(azimuth, tilt, load)
+        about = (*options.blade_alone(blade), *options.loads(azimuth, tilt, load))
         for text in about:
             output().print(text, style="bold", markup=False, soft_wrap=True)
         _show(diagram, units, subject, extra)

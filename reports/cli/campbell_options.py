@@ -14,6 +14,9 @@ from .mounting import angle
 MOST_PER_REV = 1000
 """Largest order n per revolution."""
 
+TURBINES = (".fst", ".htc")
+"""Endings of files that describe a whole turbine."""
+
 
 def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
     """Rotor speeds (rad/s) and their unit; None if neither option is given."""
@@ -30,6 +33,16 @@ def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
         return 0.0, 0.0, 0.0
     x, y, z = prestress.gravity(at, up or 0.0).tolist()
     return x, y, z
+
+
+def blade_alone(file: str) -> tuple[str, ...]:
+    """A line for the model of a turbine, of which the diagram has one blade only; none for a blade's file."""
+    if Path(file).suffix.lower() not in TURBINES:
+        return ()
+    name = Path(file).name
+    return (
+        f"{name}: one blade of the turbine, clamped at the hub; tower, drivetrain and other blades are not included",
+    )
 
 
 def loads(azimuth: float | None, tilt: float, load: Path | None) -> tuple[str, ...]:

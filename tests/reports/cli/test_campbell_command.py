@@ -12,6 +12,7 @@ import pytest
 from southwell.cases.campbell.prestress import LOAD, STANDARD_GRAVITY
 from southwell.cases.input import library
 from southwell.core.solve import modes
+from southwell.reports.cli import campbell_options
 from southwell.reports.cli.campbell import SpeedProgress
 from southwell.reports.shared.certain import certain
 from southwell.reports.shared.units import RPM
@@ -347,6 +348,12 @@ def test_without_typst_a_pdf_is_refused_before_the_work(
     assert status == 2
     assert "pip install '.[pdf]'" in err
     assert not (tmp_path / "campbell.md").exists()
+
+
+def test_the_first_line_for_a_turbine_says_that_it_is_one_blade() -> None:
+    (line,) = campbell_options.blade_alone("models/Main_Onshore.fst")
+    assert line.startswith("Main_Onshore.fst: one blade of the turbine, clamped at the hub")
+    assert not campbell_options.blade_alone("blade.dat")
 
 
 def test_gravity_and_the_frozen_azimuth_are_stated_first(
