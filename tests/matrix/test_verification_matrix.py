@@ -92,7 +92,7 @@ def test_a_printed_table_agrees(run: Run, table: str, blade: str) -> None:
     assert {cell.case for cell in cells} == {blade}
     for cell in cells:
         assert cell.role == "table"
-        assert cell.verdict in ("pass", "known difference"), cell
+        assert cell.verdict in (("coarse",) if cell.target > 5e-3 else ("pass", "known difference")), cell
         assert within_target(cell) or "discretisation error of 50 elements" in cell.reason, cell
 
 
