@@ -163,8 +163,6 @@ def test_no_process_of_a_run_executes_files_of_the_current_folder(case: Case, fo
         "--codes",
         "yoo-shin",
     ]
-    ended = subprocess.run(
-        [*command, "--faults", "none", "--workers", "1"], capture_output=True, text=True, timeout=200
-    )
+    ended = subprocess.run([*command, "--workers", "1"], capture_output=True, text=True, timeout=200)
     assert ended.returncode == 0, ended.stderr
     assert "pass" in ended.stdout
