@@ -21,7 +21,7 @@ DIGITS = 1e-10
 """Relative difference up to which two answers are equal."""
 
 UNCONVERGED = 1e-7
-"""Smallest relative discretisation error of core at which equal answers are no coincidence."""
+"""Least discretisation error of core, relative, at one speed at which equal answers are no coincidence."""
 
 
 def copied(
@@ -36,22 +36,32 @@ def copied(
     """
     for mass in get_args(Mass):
         for stiffness in get_args(Measure):
-            differences = [_difference(blade, effects, mass, stiffness, *answer) for answer in answers]
-            if differences and all(d is not None and d <= DIGITS for d in differences):
-                return answers[0][2].elements, max(d or 0.0 for d in differences)
+            if (differences := _differences(blade, effects, mass, stiffness, answers)) is not None:
+                return answers[0][2].elements, differences
     return None
 
 
-def _difference(
-    blade: Blade, effects: Effects, mass: Mass, stiffness: Measure, omega: float, reference: Reference, answer: Modes
+def _differences(
+    blade: Blade,
+    effects: Effects,
+    mass: Mass,
+    stiffness: Measure,
+    answers: Sequence[tuple[float, Reference, Modes]],
 ) -> float | None:
-    """Largest relative difference of the compared modes from core's with as many elements; None where core is converged."""
-    (mine,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
-    best = [m.estimate.value if m.estimate else np.nan for m in reference.core.modes]
-    indices = list(reference.core.wanted.indices)
-    if not isinstance(mine, Modes) or min(len(mine.frequencies), len(answer.frequencies)) <= max(indices):
-        return None
-    values, theirs = mine.frequencies[indices], answer.frequencies[indices]
-    if not np.nanmax(np.abs(values / best - 1.0), initial=0.0) > UNCONVERGED:
-        return None
-    return float(np.abs(theirs / values - 1.0).max())
+    """The largest relative difference of the compared modes from core's with as many elements.
+
+    None if one of them is larger than ``DIGITS``, or if core is converged at every speed.
+    """
+    largest, error = 0.0, 0.0
+    for omega, reference, answer in answers:
+        (mine,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
+        indices = list(reference.core.wanted.indices)
+        if not isinstance(mine, Modes) or min(len(mine.frequencies), len(answer.frequencies)) <= max(indices):
+            return None
+        values = mine.frequencies[indices]
+        largest = max(largest, float(np.abs(answer.frequencies[indices] / values - 1.0).max()))
+        if largest > DIGITS:
+            return None
+        best = [m.estimate.value if m.estimate else np.nan for m in reference.core.modes]
+        error = max(error, float(np.nanmax(np.abs(values / best - 1.0), initial=0.0)))
+    return largest if error > UNCONVERGED else None

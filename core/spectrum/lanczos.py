@@ -205,9 +205,8 @@ def _massive(p: TreePencil) -> tuple[Array, Array]:
     np.add.at(lumps, links.parent, p.M[:, :6, :6] - on_b)
     lumps[1:] += np.swapaxes(lever, 1, 2) @ on_b @ lever
     inertia = np.diagonal(lumps, axis1=1, axis2=2)
-    unit = 1.0 / np.sqrt(
-        np.where(inertia > 0, inertia, 1.0)
-    )  # in which inertias are 1, whatever the units of mass and length
+    # in these units all inertias are 1, whatever the units of mass and length
+    unit = 1.0 / np.sqrt(np.where(inertia > 0, inertia, 1.0))
     scaled = unit[:, :, None] * lumps * unit[:, None, :]
     massive = unit[:, :, None] * (np.linalg.pinv(scaled, hermitian=True) @ scaled) / unit[:, None, :]
     for k in np.flatnonzero(links.clamped.any(axis=(1, 2))):  # a joint's ends move together

@@ -12,8 +12,8 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-NUMBER = re.compile(r"[^A-Za-z]*|.*\d(e[+-]?\d+)?( ?(rad/s|rpm|Hz|%|m|kg))?|none|far.*")
-"""Text that stays on one line: signs and digits, with an exponent and a unit."""
+NUMBER = re.compile(r"(far|none|at rest|\de[+-]?\d|[^A-Za-z])*( ?(rad/s|rpm|Hz|m|kg))?|[a-z]+ \d+")
+"""Text that stays on one line: numbers with exponents and units, and names of modes such as ``flapwise 2``."""
 
 LONG = 20
 """Characters of a word, such as a path, that may be broken."""
