@@ -3,7 +3,7 @@
 import shlex
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from math import degrees, radians
+from math import degrees, pi, radians
 from pathlib import Path
 
 from ...references.protocol.process import Limits
@@ -12,7 +12,7 @@ from ..input.readers import Mount
 from ..input.schema import Case, speed_range
 from .mechanism_case import MechanismCase
 
-RPM_PER_RAD_S = 30.0 / 3.141592653589793
+RPM_PER_RAD_S = 30.0 / pi
 """Revolutions per minute in 1 rad/s."""
 
 

@@ -22,16 +22,22 @@ BETWEEN = 2
 """Characters between two columns, and at the ends of a table."""
 
 
-def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[list[int]]:
-    """Numbers of consecutive columns that fit into ``width`` characters, each time after the first column."""
-    least = [_least(h, [row[k] for row in rows]) + BETWEEN for k, h in enumerate(head)]
-    part: list[int] = [0]
-    for k in range(1, len(head)):
-        if len(part) > 1 and sum(least[j] for j in part) + least[k] > width:
+def fitting(widths: Sequence[int], width: int) -> Iterator[list[int]]:
+    """Numbers of consecutive columns whose ``widths`` add up to at most ``width`` characters, at least one each time."""
+    part: list[int] = []
+    for k, own in enumerate(widths):
+        if part and sum(widths[j] for j in part) + own > width:
             yield part
-            part = [0]
+            part = []
         part.append(k)
-    yield part
+    if part:
+        yield part
+
+
+def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[list[int]]:
+    """Numbers of the columns of each part of a table that fits into ``width`` characters; all begin with the first column."""
+    first, *others = (_least(h, [row[k] for row in rows]) + BETWEEN for k, h in enumerate(head))
+    yield from ([0, *(k + 1 for k in part)] for part in (fitting(others, width - first) if others else [[]]))
 
 
 def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title: str | None = None) -> Iterator[Table]:

@@ -1,7 +1,7 @@
 """Tables for the terminal: a run's matrix, its negative controls, and the frequencies of a blade."""
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 
 from rich import box
 from rich.markup import escape
@@ -12,6 +12,7 @@ from ...cases.judge.results import Cell, Run, Verdict
 from ..shared import summary
 from ..shared.certain import certain, relative
 from ..shared.summary import SYMBOL, broad, columns
+from ..shared.table_columns import BETWEEN, fitting
 from ..shared.units import Units
 from . import controls as faults
 from . import witnesses
@@ -32,9 +33,6 @@ COLOUR: dict[Verdict, str] = {
 NARROW = 10
 """Smallest width of a code's column in the matrix, characters; a longer word makes it wider."""
 
-BETWEEN = 2
-"""Characters between two columns."""
-
 
 def matrix(run: Run, width: int) -> Iterator[Table]:
     """The matrix, case × code: the worst verdict of all modes and speeds, and the largest difference.
@@ -48,7 +46,8 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
     widths = {
         name: max(NARROW, *(len(word) for word in f"{head} {shares[name]}".split())) for name, head in heads.items()
     }
-    for part in _fitting(widths, width - first - BETWEEN):
+    for numbers in fitting([own + BETWEEN for own in widths.values()], width - first - BETWEEN):
+        part = [list(heads)[k] for k in numbers]
         out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
         out.add_column("case", no_wrap=True)
         for name in part:
@@ -61,18 +60,6 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
             shown = [escape(shares[name]).replace(" ", "\n") for name in part]
             out.add_row("shares with core", *shown, style="dim")
         yield out
-
-
-def _fitting(widths: Mapping[str, int], width: int) -> Iterator[list[str]]:
-    """Consecutive columns that fit into ``width`` characters, at least one each."""
-    part: list[str] = []
-    for name, own in widths.items():
-        if part and sum(widths[n] + BETWEEN for n in part) + own + BETWEEN > width:
-            yield part
-            part = []
-        part.append(name)
-    if part:
-        yield part
 
 
 def legend() -> str:
