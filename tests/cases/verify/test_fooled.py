@@ -19,9 +19,13 @@ from southwell.cases.judge.verdict import bracketed, discretised, judge
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.verify import core_solver, matrix
 from southwell.cases.verify.cells import rounding
+from southwell.cases.verify.copies import copied
+from southwell.cases.verify.reference import Reference, references
+from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import Mass
 from southwell.core.element.measures import Measure
 from southwell.core.modes import Modes
+from southwell.core.solve import mesh_modes
 from southwell.references import published
 from southwell.references.protocol.process import Failure
 from southwell.reports.shared import summary
@@ -165,6 +169,18 @@ def test_a_copy_of_core_is_recognised_by_its_digits() -> None:
     assert all("core's discretisation, not independent" in c.reason for c in cells)
     (witness,) = [w for w in witnesses(found, PARK) if w.name == "copy"]
     assert witness.kind == "core's model"
+
+
+def test_a_copy_is_recognised_although_one_speed_is_converged() -> None:
+    """At that speed equal digits prove nothing; at the others they do. One other digit anywhere is no copy."""
+    case = library.load(PARK)
+    blade, speeds = case.variants[0].blade, [5.0, 10.0]
+    core = [r for r in references(blade, speeds, case.text.compare, ())[ALL_EFFECTS] if isinstance(r, Reference)]
+    copies = [mesh_modes(blade, omega, n, r.core.count) for omega, n, r in zip(speeds, (960, 8), core, strict=True)]
+    assert copied(blade, ALL_EFFECTS, list(zip(speeds, core, copies, strict=True))) is not None
+    assert copied(blade, ALL_EFFECTS, list(zip(speeds[:1], core[:1], copies[:1], strict=True))) is None
+    other = [copies[0], replace(copies[1], frequencies=copies[1].frequencies * (1.0 + 1e-8))]
+    assert copied(blade, ALL_EFFECTS, list(zip(speeds, core, other, strict=True))) is None
 
 
 def test_a_large_known_difference_is_no_comparison() -> None:
