@@ -21,7 +21,7 @@ ROOT = Path(__file__).parents[1]
 PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
 SETUPTOOLS = PROJECT["tool"]["setuptools"]
 
-NOT_PACKAGED = {"tests", "benchmarks", "examples", "docs"}
+NOT_PACKAGED = {".ci", "tests", "benchmarks", "examples", "docs"}
 """Folders with modules that are not installed."""
 
 
