@@ -11,7 +11,7 @@ from ...core.modes import Modes
 from ...references.protocol import registry
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
-from ..verify import columns
+from ..plan import columns
 from .seeding import Fault, Trial
 from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 

@@ -10,7 +10,8 @@ from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
 from ...core.effects import Effects
 from ...core.element.mesh import Mesh
 from ...core.steady.blade_state import Steady
-from ..verify import core_faults, core_solver
+from ..solve import core_solver
+from ..verify import core_faults
 
 Balance = Callable[..., Steady]
 

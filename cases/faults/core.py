@@ -9,7 +9,8 @@ from ...core import solve
 from ...core.blade import BEND_Z, TORSION
 from ...core.element import discretize, sections
 from ...core.spectrum import mesh_solver as solution
-from ..verify import core_faults, core_solver
+from ..solve import core_solver
+from ..verify import core_faults
 from .alterations import (
     at_speed,
     bladed,

@@ -9,7 +9,7 @@ from ..input import blades
 from ..judge import pairing, verdict
 from ..judge.pairing import Pair
 from ..judge.uncertainty import Estimate
-from ..verify import cells, published_tables, reference, refinement
+from ..solve import cells, published_tables, reference, refinement
 from .seeding import Fault, Seam, Trial
 from .trials import FAST, PARK
 

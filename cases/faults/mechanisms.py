@@ -13,7 +13,7 @@ from ...core.tree.linearization import Linearization
 from ...references.protocol.interface import MechanismModes
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import MechanismAnswer as Answer
-from ..verify import mechanism_columns
+from ..plan import mechanism_columns
 from .seeding import Fault, Seam, Trial
 
 HINGED = Trial("hinged-blade", (30.0,), ())

@@ -26,9 +26,10 @@ from ..input import library
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control
+from ..plan import mechanism_case
+from ..plan.mechanism_case import MechanismCase
 from ..run.executors import Serial
-from ..verify import matrix, mechanism_case
-from ..verify.mechanism_case import MechanismCase
+from ..verify import matrix
 
 Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader"]
 

@@ -19,7 +19,7 @@ from ...core.effects import ALL_EFFECTS
 from ...references.protocol.process import Failure
 from ..input.schema import Compare
 from ..judge.measured import Validation
-from ..verify.core_solver import converged
+from ..solve.core_solver import converged
 from .points import RPM, Point
 
 INCH, POUND = 0.0254, 4.4482216152605

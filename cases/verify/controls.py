@@ -16,8 +16,8 @@ from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, pair, weights
+from ..solve.core_solver import COARSEST, qualifying
 from .core_faults import CORE_FAULTS, Solve
-from .core_solver import COARSEST, qualifying
 
 ELEMENTS = COARSEST
 """Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""

@@ -20,14 +20,15 @@ from ...references.protocol.store import StoreError
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
-from . import error_budget, mechanism_columns
-from .columns import Column, Rows, columns, failing
-from .mechanism_case import MechanismCase, Turning
-from .names import unique
-from .reference import references
-from .settings import settings
-from .user_columns import columns as added_columns
-from .user_results import UserResults, check
+from ..plan import mechanism_columns
+from ..plan.columns import Column, Rows, columns, failing
+from ..plan.mechanism_case import MechanismCase, Turning
+from ..plan.names import unique
+from ..plan.settings import settings
+from ..plan.user_columns import columns as added_columns
+from ..plan.user_results import UserResults, check
+from ..solve.reference import references
+from . import error_budget
 
 
 @dataclass(frozen=True)

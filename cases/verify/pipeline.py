@@ -18,17 +18,18 @@ from ..input.schema import Case
 from ..input.writing import writable
 from ..judge import results
 from ..judge.results import RESULTS, Control, Planned, Run, Setting
+from ..plan import measurements, names, subjects, user_results
+from ..plan.mechanism_case import MechanismCase
+from ..plan.request import Execution, Request, command_line
+from ..plan.settings import NOT_USED, settings
+from ..plan.user_results import UserResults
 from ..run.executors import Serial, executor
 from ..run.software import Software
 from ..store import unfinished
 from ..store.stored import Stored
 from ..store.unfinished import Unfinished
-from . import matrix, measurements, names, subjects, user_results
+from . import matrix
 from .matrix import Progress
-from .mechanism_case import MechanismCase
-from .request import Execution, Request, command_line
-from .settings import NOT_USED, settings
-from .user_results import UserResults
 
 SCRATCH = "results.partial.tmp"
 """Folder in the output folder for temporary files of this run and of the codes it runs."""

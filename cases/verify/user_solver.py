@@ -19,12 +19,12 @@ from ...references.protocol.worker import Run as Asked
 from ..input.schema import Compare, Variant
 from ..judge.results import Cell
 from ..judge.verdict import judge, percent, unsigned
-from . import published_tables
-from .cells import Head, Rows, empty, refined
-from .columns import without_reference
+from ..plan.columns import without_reference
+from ..solve import published_tables
+from ..solve.cells import Head, Rows, empty, refined
+from ..solve.reference import References, felt, references
+from ..solve.refinement import Refining, solve
 from .controls import SAME_MODE, Wrong
-from .reference import References, felt, references
-from .refinement import Refining, solve
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from matplotlib.colors import to_hex
 from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.verify.user_results import UserResults
+from ...cases.plan.user_results import UserResults
 from ...core.participation import FAMILIES
 from ..shared.certain import certain
 from ..shared.style import MUTED, WIDTH, beside, house, key, title

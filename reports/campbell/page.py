@@ -10,7 +10,7 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import as_it_is, polynomials
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
-from ...cases.verify.user_results import UserResults
+from ...cases.plan.user_results import UserResults
 from ..shared.style import house, save
 from ..shared.units import Units
 from . import cover, csv_tables, encounters, shapes, span

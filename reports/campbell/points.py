@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.judge.measured import COVERAGE
-from ...cases.verify.user_results import Given, UserResults
+from ...cases.plan.user_results import Given, UserResults
 from ..shared.style import INK, MARKERS
 from ..shared.units import Units
 

@@ -77,7 +77,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
     from ...cases.input.errors import CaseError
     from ...cases.input.library import select
-    from ...cases.verify.names import unique
+    from ...cases.plan.names import unique
     from ...cases.verify.user_solver import UserSolver
 
     target = config.getoption("--southwell-target")
@@ -200,7 +200,7 @@ def _packed(chosen: Chosen, cells: Any, levels: Any) -> str:
     """Serialise one test's rows for the report; text can be sent from a worker process."""
     import msgspec
 
-    from ...cases.verify.settings import settings
+    from ...cases.plan.settings import settings
 
     about = [s for s in settings(chosen.case) if s.case == chosen.variant.name]
     return msgspec.json.encode({"cells": cells, "levels": levels, "settings": about}).decode()

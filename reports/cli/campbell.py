@@ -22,8 +22,9 @@ from ...cases.input.changes import parse
 from ...cases.input.default_case import default_case
 from ...cases.input.errors import CaseError
 from ...cases.input.writing import writable
+from ...cases.plan import measurements
 from ...cases.run.executors import Processes
-from ...cases.verify import matrix, measurements
+from ...cases.verify import matrix
 from ...core.blade import Blade
 from ...core.modes import Modes
 from ...references.protocol import registry

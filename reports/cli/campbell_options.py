@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...cases.campbell import prestress
 from ...cases.input.errors import CaseError
-from ...cases.verify import request
+from ...cases.plan import request
 from ...core.blade import Blade
 from ..shared.units import RAD_S, RPM, Units
 from .mounting import angle

@@ -8,8 +8,8 @@ from cyclopts import App
 
 from ...cases.input import library
 from ...cases.input.errors import nearest
-from ...cases.verify import mechanism_case
-from ...cases.verify.settings import settings
+from ...cases.plan import mechanism_case
+from ...cases.plan.settings import settings
 from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
 from ...references.protocol import registry as registry

@@ -9,7 +9,7 @@ from ...cases.input.changes import Change
 from ...cases.input.errors import CaseError
 from ...cases.input.library import is_blade_file, select
 from ...cases.input.readers import Mount, Unused
-from ...cases.verify.settings import settings
+from ...cases.plan.settings import settings
 from ...core.blade import Blade
 from ..shared.units import BY_KEY, RPM, Units
 

@@ -2,8 +2,8 @@
 
 from pathlib import Path
 
+from ...cases.plan.request import Execution, Request
 from ...cases.verify.pipeline import verify
-from ...cases.verify.request import Execution, Request
 from ...references.protocol.process import Limits
 from .arguments import Changes, Count, Positive, Workers, cluster_workers
 from .mounting import Mounting

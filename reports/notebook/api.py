@@ -16,8 +16,8 @@ from ...cases.input.default_case import MODES, default_case
 from ...cases.input.errors import CaseError
 from ...cases.input.readers import Mount
 from ...cases.input.schema import Case, speed_range
+from ...cases.plan.request import Execution, Request
 from ...cases.verify import pipeline
-from ...cases.verify.request import Execution, Request
 from ...core import solve
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects

@@ -13,9 +13,9 @@ from ...cases.input import library
 from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Run, Setting
-from ...cases.verify import mechanism_case
-from ...cases.verify.mechanism_case import MechanismCase
-from ...cases.verify.settings import settings
+from ...cases.plan import mechanism_case
+from ...cases.plan.mechanism_case import MechanismCase
+from ...cases.plan.settings import settings
 from ...references.protocol import registry as registry
 from ..cli import app, arguments
 from ..shared.markdown import plain, table

@@ -11,9 +11,9 @@ from southwell.cases.input import library
 from southwell.cases.input.schema import Case, Variant
 from southwell.cases.judge.results import Run
 from southwell.cases.judge.witnesses import groups, witnesses
-from southwell.cases.verify import paper
-from southwell.cases.verify.columns import PAPER, columns
-from southwell.cases.verify.reference import references
+from southwell.cases.plan.columns import PAPER, columns
+from southwell.cases.solve import paper
+from southwell.cases.solve.reference import references
 from southwell.core import multibody as mb
 from southwell.core import park2010, park2010_input, solve
 from southwell.core import park2010_modes as oracle

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.verify.published_tables import UNITS
+from southwell.cases.solve.published_tables import UNITS
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes

@@ -295,7 +295,7 @@ def take(kind: str, path: Path, rng: random.Random) -> None:
     from southwell.cases.campbell import prestress
     from southwell.cases.condense import condensed, condensing
     from southwell.cases.input import mechanisms, readers, schema
-    from southwell.cases.verify import user_results
+    from southwell.cases.plan import user_results
     from southwell.core.blade import uniform_blade
     from southwell.core.condense import matrix_files
     from southwell.reports.cli import arguments

@@ -4,7 +4,7 @@ from collections.abc import Callable
 
 from southwell import multibody as mb
 from southwell.cases.input import library
-from southwell.cases.verify import mechanism_case
+from southwell.cases.plan import mechanism_case
 from southwell.tests.support import five_bar, four_bar
 from southwell.tests.support import linkages as loops
 from southwell.tests.support.closed_forms import linkages, pendulums

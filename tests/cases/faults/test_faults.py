@@ -14,7 +14,7 @@ from southwell.cases.faults.table import ALL, BY_NAME, FAST
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import results, verdict
 from southwell.cases.judge.results import Control, Run
-from southwell.cases.verify import cells
+from southwell.cases.solve import cells
 from southwell.references.protocol.description import Description
 from southwell.reports.shared import summary
 from southwell.reports.verification import controls as reported

@@ -8,8 +8,8 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError, FilesMissingError
-from southwell.cases.verify import subjects
-from southwell.cases.verify.request import Request
+from southwell.cases.plan import subjects
+from southwell.cases.plan.request import Request
 from southwell.core.blade import coupled, straight
 from southwell.reports.cli import app as cli
 

@@ -11,7 +11,7 @@ from southwell.cases.input.blades import read_table
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.files import table, text
 from southwell.cases.input.readers import Mount
-from southwell.cases.verify import user_results
+from southwell.cases.plan import user_results
 
 DATA = Path(__file__).parents[2] / "data" / "blades"
 COLUMNS = ("fraction [-]", "mass [kg/m]")

@@ -14,8 +14,8 @@ from southwell.cases.input import files, mechanisms, readers, schema, toml
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers.text import MAX_LINES
 from southwell.cases.judge import results
+from southwell.cases.plan import user_results
 from southwell.cases.regression import history
-from southwell.cases.verify import user_results
 from southwell.core.condense import matrix_files
 from southwell.core.condense.exported import MatrixFileError
 from southwell.core.regular_files import FileRefusedError, read_bytes

@@ -9,7 +9,7 @@ import pytest
 from southwell.cases.input import library, readers
 from southwell.cases.input.readers import Mount
 from southwell.cases.judge import results
-from southwell.cases.verify.settings import NOT_USED
+from southwell.cases.plan.settings import NOT_USED
 
 from ...reports.cli.test_cli import southwell
 

@@ -14,11 +14,11 @@ import numpy as np
 import pytest
 
 from southwell.cases.judge.results import Cell, Control
+from southwell.cases.plan.columns import Column
 from southwell.cases.run.executors import Serial
+from southwell.cases.solve.cells import Head, failed
 from southwell.cases.store import stored
 from southwell.cases.store.stored import Stored
-from southwell.cases.verify.cells import Head, failed
-from southwell.cases.verify.columns import Column
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import sources, store

@@ -17,10 +17,11 @@ from southwell.cases.input import library
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.judge.verdict import bracketed, discretised, judge
 from southwell.cases.judge.witnesses import groups, witnesses
-from southwell.cases.verify import core_solver, matrix
-from southwell.cases.verify.cells import rounding
-from southwell.cases.verify.copies import copied
-from southwell.cases.verify.reference import Reference, references
+from southwell.cases.solve import core_solver
+from southwell.cases.solve.cells import rounding
+from southwell.cases.solve.copies import copied
+from southwell.cases.solve.reference import Reference, references
+from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import Mass
 from southwell.core.element.measures import Measure

@@ -10,7 +10,8 @@ import pytest
 
 from southwell.cases.input.schema import Case, read
 from southwell.cases.judge.results import Cell, Run
-from southwell.cases.verify import columns, matrix
+from southwell.cases.plan import columns
+from southwell.cases.verify import matrix
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
 from southwell.references.protocol.process import Limits

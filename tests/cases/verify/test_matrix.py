@@ -10,8 +10,8 @@ import pytest
 from southwell.cases.input.schema import Case, read
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.plan.columns import PAPER
 from southwell.cases.verify import matrix
-from southwell.cases.verify.columns import PAPER
 from southwell.cases.verify.matrix import Progress
 from southwell.reports.shared import summary
 from southwell.reports.shared.statuses import FAILED

@@ -10,7 +10,7 @@ import pytest
 from southwell.cases.campbell.sweep import Named
 from southwell.cases.input.library import load
 from southwell.cases.input.schema import Compare
-from southwell.cases.verify import core_solver
+from southwell.cases.solve import core_solver
 from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.effects import ALL_EFFECTS

@@ -18,7 +18,7 @@ import yaml
 
 from southwell.cases.input import library
 from southwell.cases.judge import results
-from southwell.cases.verify.settings import settings
+from southwell.cases.plan.settings import settings
 from southwell.references.protocol import registry
 from southwell.reports.cli import app as cli
 from southwell.reports.cli.arguments import RESULTS

@@ -9,7 +9,7 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.judge import results
-from southwell.cases.verify import core_solver
+from southwell.cases.solve import core_solver
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.solve import modes
 from southwell.references.protocol import registry

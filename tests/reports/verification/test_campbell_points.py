@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from matplotlib.figure import Figure
 
-from southwell.cases.verify import user_results
-from southwell.cases.verify.user_results import Defaults, UserResults
+from southwell.cases.plan import user_results
+from southwell.cases.plan.user_results import Defaults, UserResults
 from southwell.reports.campbell import points
 from southwell.reports.shared.units import RPM
 

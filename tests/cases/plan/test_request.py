@@ -9,7 +9,7 @@ import pytest
 
 from southwell.cases.input.readers import Mount
 from southwell.cases.judge.results import Run
-from southwell.cases.verify.request import Execution, Request, command_line
+from southwell.cases.plan.request import Execution, Request, command_line
 from southwell.reports.cli import app
 from southwell.reports.cli import verify as command
 

@@ -7,7 +7,7 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from southwell.cases.verify.refinement import LEAST, MOST, Refining, Wanted, follow, solve
+from southwell.cases.solve.refinement import LEAST, MOST, Refining, Wanted, follow, solve
 from southwell.core.modes import STATIONS, Modes
 from southwell.references.protocol.worker import Answer, Run
 

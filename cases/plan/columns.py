@@ -20,12 +20,12 @@ from ...references.protocol.worker import Answer, answers
 from ...references.protocol.worker import Run as Asked
 from ..input.schema import Case, Discretisation, Variant
 from ..judge.results import Cell, Level, Verdict
-from . import core_solver, paper
-from .cells import Head, empty, failed, given, refined, rounding, same
-from .copies import copied
-from .published_tables import about, rows
-from .reference import Reference, felt
-from .refinement import Refining, Wanted, solve
+from ..solve import core_solver, paper
+from ..solve.cells import Head, empty, failed, given, refined, rounding, same
+from ..solve.copies import copied
+from ..solve.published_tables import about, rows
+from ..solve.reference import Reference, felt
+from ..solve.refinement import Refining, Wanted, solve
 
 SAME = 1e-8
 """Target for two codes with the same discretisation."""

@@ -30,7 +30,7 @@ from ..judge.pairing import LEAST_MAC
 from ..judge.results import Cell, Verdict
 from ..judge.uncertainty import ROUNDING
 from ..judge.verdict import judge, unsigned
-from .cells import Head, empty, failed
+from ..solve.cells import Head, empty, failed
 from .columns import Column, Rows, failing_work, not_installed
 from .mechanism_case import MechanismCase, Turning
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input.schema import Compare
-from southwell.cases.verify.core_solver import Converged, answers, converged
+from southwell.cases.solve.core_solver import Converged, answers, converged
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.modes import Modes

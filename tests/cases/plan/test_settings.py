@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.verify.settings import settings
+from southwell.cases.plan.settings import settings
 
 EVERYWHERE = {"length", "hub radius", "mass", "stations", "speeds", "modes compared", "target"}
 

@@ -18,9 +18,9 @@ from ...references.protocol.process import Failure
 from ..input.schema import Compare, Variant
 from ..judge.results import Cell
 from ..judge.uncertainty import Estimate
-from .cells import Datum, Head, empty, measured, printed
+from ..solve.cells import Datum, Head, empty, measured, printed
+from ..solve.reference import Reference, references
 from .columns import Column, References, Rows
-from .reference import Reference, references
 from .user_results import Given, UserResults, at
 
 

@@ -14,11 +14,12 @@ from southwell.cases.judge.pairing import Pair
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.judge.uncertainty import Estimate
 from southwell.cases.judge.witnesses import witnesses
-from southwell.cases.verify import matrix, user_columns, user_results
-from southwell.cases.verify.cells import Head
-from southwell.cases.verify.core_solver import Converged
-from southwell.cases.verify.reference import Reference
-from southwell.cases.verify.refinement import RefinedMode, Wanted
+from southwell.cases.plan import user_columns, user_results
+from southwell.cases.solve.cells import Head
+from southwell.cases.solve.core_solver import Converged
+from southwell.cases.solve.reference import Reference
+from southwell.cases.solve.refinement import RefinedMode, Wanted
+from southwell.cases.verify import matrix
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
 from southwell.reports.cli import app as cli
