@@ -8,7 +8,7 @@ signatures in ``kernels.pyi``; with ``SOUTHWELL_BASELINE`` set, it is the one fo
 import os
 from typing import TYPE_CHECKING
 
-from . import sources
+from . import imported, sources
 
 if TYPE_CHECKING:
     from . import kernels
@@ -17,13 +17,14 @@ else:
         from . import baseline as kernels
     except ImportError as error:
         raise ImportError(
-            f"southwell's compiled kernels cannot be loaded ({error}): install the package again"
+            f"southwell's compiled kernels cannot be loaded ({error}): {imported.remedy('install the package again')}"
         ) from error
     if kernels.processor_has_avx2() and not os.environ.get("SOUTHWELL_BASELINE"):
         from . import avx2 as kernels
     if kernels.sources() != sources.digest():
         raise ImportError(
-            "southwell's compiled kernels are not those of their sources: run make, or pip install --editable ."
+            "southwell's compiled kernels are not those of their sources: "
+            + imported.remedy("run make, or pip install --editable .")
         )
 
 __all__ = ["kernels"]

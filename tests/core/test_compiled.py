@@ -1,9 +1,11 @@
 """The compiled kernels: the versions for different processors agree, and arrays of a wrong kind are errors, not crashes."""
 
 import importlib.resources
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -113,3 +115,18 @@ import southwell.core.compiled
     run = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
     assert run.returncode == 1
     assert "ImportError: southwell's compiled kernels are not those of their sources: run make" in run.stderr
+
+
+def test_a_checkout_in_the_current_folder_that_hides_the_package_is_named(tmp_path: Path) -> None:
+    """A checkout without compiled modules; Python finds it in the folder in which it is started."""
+    source = Path(kernels.__file__).parents[2]
+    checkout = tmp_path / "southwell"
+    shutil.copytree(source / "core", checkout / "core", ignore=shutil.ignore_patterns("*.so", "*.pyd", "__pycache__"))
+    for name in ("__init__.py", "pyproject.toml"):
+        shutil.copy(source / name, checkout)
+    load = [sys.executable, "-c", "import southwell.core.compiled"]
+    run = subprocess.run(load, capture_output=True, text=True, cwd=tmp_path)
+    assert run.returncode == 1
+    last = run.stderr.strip().splitlines()[-1]
+    assert f"{checkout} is imported, a checkout, because {tmp_path} is the current folder on sys.path" in last
+    assert f"start Python in another folder, or build the checkout: pip install --editable {checkout}" in last
