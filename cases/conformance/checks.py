@@ -65,7 +65,7 @@ def refuses(code: BladeAdapter) -> None:
 def at_rest(code: BladeAdapter) -> None:
     """A uniform cantilever, two modes in each plane."""
     limit, _, bracket = limit_of(code, BEAM, 0.0)
-    close(limit, np.repeat(CANTILEVER[:2], 2), "beam at rest, in pairs", max(bracket, TOLERANCE))
+    close(limit, np.repeat(CANTILEVER[:2], 2), "beam at 0 rad/s, in pairs", max(bracket, TOLERANCE))
 
 
 def turning(code: BladeAdapter) -> None:
@@ -80,11 +80,16 @@ def counts(code: BladeAdapter) -> None:
     few, many = (ask(code, BEAM, known.SPEED, 0, count) for count in (3, 8))
     for modes, count in ((few, 3), (many, 8)):
         f = modes.frequencies
-        keep(3 <= len(f) <= count, f"{count} modes requested, {len(f)} returned")
-        keep((f > 0).all() and (np.diff(f) >= 0).all(), f"frequencies: {f.tolist()}: not positive and ascending")
+        keep(3 <= len(f) <= count, f"beam at {known.SPEED:g} rad/s: {count} modes requested, {len(f)} returned")
+        bad = np.flatnonzero(~(f > 0) | (np.diff(f, prepend=0.0) < 0))
+        keep(
+            not bad.size,
+            f"beam at {known.SPEED:g} rad/s, mode {int(bad[0]) + 1 if bad.size else 0}: frequencies {f.tolist()}: not positive "
+            "and ascending",
+        )
         keep(modes.omega == known.SPEED, f"Modes.omega: {modes.omega}, requested {known.SPEED}")
         keep(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, requested {code.levels[0]}")
-    close(many.frequencies, few.frequencies, "the first three of eight modes, and three modes", same(code))
+    close(many.frequencies, few.frequencies, f"beam at {known.SPEED:g} rad/s, 3 and 8 requested", same(code))
 
 
 def repeats(code: BladeAdapter) -> None:
@@ -95,22 +100,24 @@ def repeats(code: BladeAdapter) -> None:
     alike = np.array_equal(first.frequencies, again.frequencies) and np.array_equal(first.shapes, again.shapes)
     keep(
         alike,
-        f"the same call before and after another: {first.frequencies.tolist()}, then {again.frequencies.tolist()}",
+        f"beam at {known.SPEED:g} rad/s: the same call before and after another (hub radius 1 m, 1 rad/s): "
+        f"{first.frequencies.tolist()}, then {again.frequencies.tolist()}",
     )
 
 
 def shapes(code: BladeAdapter) -> None:
     """The first shape, nearly that at rest."""
     shape = ask(code, BEAM, known.SPEED, 1).shapes[0]
-    keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"the root moves: {shape[0].tolist()}")
+    at = f"beam at {known.SPEED:g} rad/s, mode 1"
+    keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"{at}: the root moves: {shape[0].tolist()}")
     moved = np.abs(shape[:, 1:3]).max(axis=1)
     wrong = np.abs(moved / moved[-1] - known.cantilever_shape()).max()
     keep(
         wrong < 0.02,
-        f"first shape: differs from the cantilever's by up to {wrong:.3f} of the tip's motion: wrong stations or scale?",
+        f"{at}: the shape differs from the cantilever's by up to {wrong:.3f} of the tip's motion: wrong stations or scale?",
     )
     stray = np.abs(shape[:, [0, 3]]).max() / moved[-1]
-    keep(stray < 0.05, f"first shape: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
+    keep(stray < 0.05, f"{at}: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
 
 
 def order(code: BladeAdapter) -> None:
@@ -126,7 +133,7 @@ def order(code: BladeAdapter) -> None:
     seen = np.log(first / second) / np.log(n[1] / n[0])
     keep(
         seen > code.order - 0.3,
-        f"observed order {seen:.2f}, declared {code.order}: {f.tolist()} rad/s with {n} elements",
+        f"beam at 0 rad/s, mode 3: observed order {seen:.2f}, declared {code.order}: {f.tolist()} rad/s with {n} elements",
     )
 
 
@@ -142,32 +149,36 @@ def units(code: BladeAdapter) -> None:
         mass=BEAM.mass * mass * length ** (power - 1.0),
     )
     here, there = ask(code, BEAM, known.SPEED, 0), ask(code, other, known.SPEED * rate, 0)
-    close(there.frequencies / rate, here.frequencies, "the same beam in ft, lb and min", rounding(code))
+    close(
+        there.frequencies / rate, here.frequencies, f"beam at {known.SPEED:g} rad/s, in ft, lb and min", rounding(code)
+    )
 
 
 def quarter_pitch(code: BladeAdapter) -> None:
     """A pitch of 90° exchanges the planes."""
     pitched, plain = (ask(code, b, known.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), known.SWAPPED))
-    close(pitched.frequencies, plain.frequencies, "a plank pitched by 90°, and one with exchanged planes", same(code))
+    at = f"plank pitched by 90° at {known.SPEED:g} rad/s"
+    close(pitched.frequencies, plain.frequencies, f"{at}, against exchanged planes", same(code))
     for axis in (1, 2):
         alike = along(pitched, axis) == along(plain, axis)
-        keep(alike, f"a plank pitched by 90°: its modes along {'xyz'[axis]} are not those of one with exchanged planes")
+        keep(alike, f"{at}: the lowest mode along {'xyz'[axis]} is not that of a plank with exchanged planes")
 
 
 def pitch_sense(code: BladeAdapter) -> None:
     """Flapwise motion leans to −y."""
     found = _lean(ask(code, replace(PLANK, pitch=0.3), 0.0, 1))
-    keep(
-        abs(found + np.tan(0.3)) < 0.01, f"at rest, pitched by 0.3: y/z = {found:.4f}, expected −tan 0.3: wrong sense?"
-    )
+    _leans(found, "pitched")
 
 
 def twist_sense(code: BladeAdapter) -> None:
     """The same by twist."""
     found = _lean(ask(code, replace(PLANK, twist=np.array([0.3, 0.3])), 0.0, 1))
-    keep(
-        abs(found + np.tan(0.3)) < 0.01, f"at rest, twisted by 0.3: y/z = {found:.4f}, expected −tan 0.3: wrong sense?"
-    )
+    _leans(found, "twisted")
+
+
+def _leans(found: float, how: str) -> None:
+    at = f"plank {how} by 0.3 rad at 0 rad/s, mode 1"
+    keep(abs(found + np.tan(0.3)) < 0.01, f"{at}: y/z = {found:.4f}, expected −tan 0.3: wrong sense?")
 
 
 def _lean(modes: Modes) -> float:
@@ -192,7 +203,7 @@ def coriolis_sense(code: BladeAdapter) -> None:
     exact = 2j * known.MASS * omega * w / EA * np.trapezoid(green * v, s)
     keep(
         abs(u - exact) < 0.05 * abs(exact),
-        f"lowest mode along y at {omega:g} rad/s: stretch over edgewise motion at the tip {u / v[-1]:.4f}, expected "
+        f"{blade.name} at {omega:g} rad/s, mode {lag + 1}: stretch over edgewise motion at the tip {u / v[-1]:.4f}, expected "
         f"{exact / v[-1]:.4f}: wrong sign of the Coriolis terms, or exp(−iωt)?",
     )
 
@@ -207,13 +218,15 @@ def torsion(code: BladeAdapter) -> None:
         there = (np.abs(limit / exact - 1.0) < TOLERANCE).any()
         keep(
             not there,
-            f"soft shaft: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
+            f"soft shaft at 0 rad/s: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
         )
         raise NotForItError("the code has no torsion")
-    close(limit[turns[0]], exact, "soft shaft at rest, lowest torsional mode", TOLERANCE)
+    first = int(turns[0]) + 1
+    close(limit[turns[0]], exact, "soft shaft at 0 rad/s, lowest torsional mode", TOLERANCE, first)
     shape = fine.shapes[turns[0], :, 3]
     wrong = np.abs(shape / shape[-1] - np.sin(np.pi / 2 * STATIONS)).max()
-    keep(wrong < 0.01, f"soft shaft: its rotation differs from a quarter sine by {wrong:.3f} of the tip's")
+    at = f"soft shaft at 0 rad/s, mode {first}"
+    keep(wrong < 0.01, f"{at}: the rotation differs from a quarter sine by {wrong:.3f} of the tip's")
 
 
 def tip_mass_weighs(code: BladeAdapter) -> None:

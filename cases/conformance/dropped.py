@@ -34,7 +34,16 @@ def _with_and_without(name: str, effects: Effects) -> tuple[Array, Array]:
 
 
 def _far(found: Array, other: Array) -> float:
-    return float(np.abs(np.log(found[: len(other)] / other[: len(found)])).max())
+    return float(_differences(found, other).max())
+
+
+def _differences(found: Array, other: Array) -> Array:
+    return np.abs(np.log(found[: len(other)] / other[: len(found)]))
+
+
+def _mode(found: Array, other: Array) -> int:
+    """Number of the mode that differs most."""
+    return int(_differences(found, other).argmax()) + 1
 
 
 def effects(code: BladeAdapter) -> None:
@@ -55,7 +64,8 @@ def effects(code: BladeAdapter) -> None:
             raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {name}")
         keep(
             near <= DROPPED * change,
-            f"effects.{name} = {kept}: differs by {near:.2%} from core with these effects; {name} changes {change:.2%}",
+            f"effects.{name} = {kept}: {known.STUBBY.name} at {known.FAST:g} rad/s, mode {_mode(found, here)}: differs by "
+            f"{near:.2%} from core with these effects; {name} changes the frequencies by up to {change:.2%}",
         )
 
 
@@ -71,5 +81,6 @@ def keeps(one: Property, code: BladeAdapter) -> None:
     near, far = _far(found, having), _far(found, lacking)
     keep(
         near <= DROPPED * change,
-        f"{one.name}: differs by {near:.2%} from the blade with it, by {far:.2%} from the blade without it",
+        f"{one.name}: at {one.omega:g} rad/s, mode {_mode(found, having)}: differs by {near:.2%} from the blade with it, "
+        f"by {far:.2%} from the blade without it",
     )

@@ -221,6 +221,27 @@ def test_mistakes_are_caught(fault: str) -> None:
     assert all(reason.strip() and "\n" not in reason for reason in found.values())
 
 
+FINDINGS = {
+    "hertz": ("cantilever at rest", "beam at 0 rad/s, in pairs, mode "),
+    "pitch the other way": ("pitch's sense", "plank pitched by 0.3 rad at 0 rad/s, mode 1: "),
+    "Coriolis the other way": ("Coriolis's sense", "stubby beam at 10 rad/s, mode "),
+    "hub dropped": ("keeps hub radius", "hub radius: at 3 rad/s, mode "),
+    "no Coriolis, unsaid": ("effects", "effects.prestretch = True: stubby beam at 10 rad/s, mode "),
+    "tip first": ("shapes", "beam at 3 rad/s, mode 1: "),
+    "six digits, unsaid": ("units", "beam at 3 rad/s, in ft, lb and min, mode "),
+    "one mode too many": ("counts", "beam at 3 rad/s: 3 modes requested, 4 returned"),
+}
+"""Fault → a check, and the parameter, speed and mode that its finding starts with."""
+
+
+@pytest.mark.parametrize("fault", FINDINGS)
+def test_a_finding_names_parameter_speed_and_mode(fault: str) -> None:
+    check, start = FINDINGS[fault]
+    reason = failures(FAULTS[fault][0], among=f"^{check}$")[check]
+    assert reason.startswith(start)
+    assert not start.endswith("mode ") or reason.removeprefix(start)[0].isdigit()
+
+
 @pytest.mark.slow
 @pytest.mark.parametrize("digits", [5, 7])
 def test_digits_that_are_said_are_enough(digits: int) -> None:
