@@ -21,6 +21,7 @@ class Changed:
         name: family and number within the family in the first blade, ``flapwise 2``.
         frequency: frequency of the first blade, rad/s.
         other: frequency of the mode of the other blade with the same shape, rad/s; NaN if there is none.
+        uncertainty: of ``relative``, numerical: the sum of both frequencies' relative uncertainties.
         mac: MAC of the two shapes.
         note: why there is no partner, or why it is ambiguous.
     """
@@ -29,6 +30,7 @@ class Changed:
     name: str
     frequency: float
     other: float
+    uncertainty: float
     mac: float
     note: str = ""
 
@@ -61,6 +63,15 @@ def _at(blade: Blade, found: Modes, other: Modes, modes: int, weight: np.ndarray
     names = numbered(families(participation(found, blade)))
     out = []
     for k, partner in zip(indices, pair(found, other, indices, weight), strict=True):
-        theirs = float(other.frequencies[partner.mode]) if partner.mode is not None else np.nan
-        out.append(Changed(found.omega, names[k], float(found.frequencies[k]), theirs, partner.mac, partner.note))
+        theirs, sure = np.nan, np.nan
+        if partner.mode is not None:
+            theirs, sure = (
+                float(other.frequencies[partner.mode]),
+                _uncertainty(found, k) + _uncertainty(other, partner.mode),
+            )
+        out.append(Changed(found.omega, names[k], float(found.frequencies[k]), theirs, sure, partner.mac, partner.note))
     return out
+
+
+def _uncertainty(modes: Modes, k: int) -> float:
+    return float(modes.uncertainty[k]) if len(modes.uncertainty) else np.nan

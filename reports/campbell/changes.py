@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from math import isnan
 
 from ...cases.campbell.changes import Changed
+from ..shared.certain import certain
 from ..shared.units import Units
 from .tables import Sheet
 
@@ -20,13 +21,20 @@ def sheet(found: Sequence[Changed], against: str, units: Units) -> Sheet:
         (
             row.name,
             f"{row.omega * units.speeds:.6g}",
-            f"{row.other * units.frequencies:.5g}" if not isnan(row.other) else "–",
-            f"{row.frequency * units.frequencies:.5g}",
-            f"{100 * row.relative:+.2f} %".replace("-", "−") if not isnan(row.other) else "no partner",
+            certain(row.other * units.frequencies, row.uncertainty) if not isnan(row.other) else "–",
+            certain(row.frequency * units.frequencies, 0.0 if isnan(row.other) else row.uncertainty),
+            percent(row.relative) if not isnan(row.other) else "no partner",
+            f"{100 * row.uncertainty:.0e} %" if not isnan(row.other) else "–",
         )
         for row in found
     )
     notes = dict.fromkeys(f"{row.name}, {units.at(row.omega)}: {row.note}" for row in found if row.note)
-    head = ("mode", units.speed, f"other, {units.frequency}", f"this, {units.frequency}", "change")
-    text = "Modes are paired by their shapes (MAC), not by their numbers."
-    return Sheet(f"Changes against {against}", head, rows, ". ".join([text.rstrip("."), *notes]) + ".")
+    head = ("mode", units.speed, f"other, {units.frequency}", f"this, {units.frequency}", "change", "±")
+    text = "Modes are paired by shape (MAC); ± is the numerical uncertainty of the change"
+    return Sheet(f"Changes against {against}", head, rows, ". ".join([text, *notes]) + ".")
+
+
+def percent(change: float) -> str:
+    """A relative change in percent with three significant digits, such as ``+0.0123 %`` or ``−1.5e-07 %``."""
+    text = f"{100 * change:+#.3g}".rstrip(".") if change else "0"
+    return f"{text.replace('-', '−', 1) if change < 0 else text} %"

@@ -31,6 +31,12 @@ def test_a_heavier_blade_is_slower_by_the_square_root(capsys: pytest.CaptureFixt
     assert max(map(len, table.splitlines())) <= 80
 
 
+def test_a_tiny_change_has_significant_digits(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """ω ∝ 1/√m at rest: a mass larger by 2e-9 changes every frequency by −1e-9, which is not "+0.00 %"."""
+    _, out, _ = southwell(f"modes {BLADE} --rpm 0 --modes 2 --set mass=*1.000000002 --against {DECK}", capsys)
+    assert re.findall(r"(\S+) %  \S+ %", out[out.index("Changes against") :]) == ["−1.00e-07"] * 2
+
+
 def test_stiffer_in_flap_moves_flapwise_modes_only_little_of_the_others(capsys: pytest.CaptureFixture[str]) -> None:
     """√1.1 − 1 = 4.88 % bounds every change; a twisted blade's edgewise modes have a little of it."""
     _, out, _ = southwell(f"modes {BLADE} --rpm 0,12.1 --modes 2 --set 'EI_flap=*1.1' --against {DECK}", capsys)

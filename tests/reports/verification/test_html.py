@@ -16,7 +16,7 @@ from southwell.reports.cli import arguments
 from southwell.reports.shared import colours, html, summary
 from southwell.reports.verification import report as matrix_report
 
-from ...support import samples
+from ...support import browsers, samples
 from .test_markdown import HOSTILE
 
 
@@ -132,3 +132,17 @@ def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
     assert not [tag for tag, _ in page.tags if tag == "script"]
     assert all(source.startswith("data:image/svg+xml,") for source in page.of("img", "src"))
     assert not [name for _, given in page.tags for name in given if name.startswith("on")]
+
+
+@pytest.mark.slow
+@browsers.needed
+def test_a_page_fits_a_telephone_also_with_long_names(tmp_path: Path) -> None:
+    name = "blade_of_a_research_turbine_" * 4
+    page = tmp_path / "page.html"
+    digest = "4e" * 32
+    text = f"# Diagram of {name}\n\n{name}: verdict\n\n- {name}\n\n|file|digest|\n|:--|:--|\n|{name}|`{digest}`|\n"
+    page.write_text(html.render(text, tmp_path), encoding="utf-8")
+    with browsers.browser() as running, browsers.tab(running) as tab:
+        tab.set_viewport_size({"width": 390, "height": 800})
+        tab.goto(page.as_uri())
+        assert tab.evaluate("document.documentElement.scrollWidth") <= 390
