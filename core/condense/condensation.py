@@ -30,6 +30,7 @@ from .ties import CondensationError, FiniteElements, Tie
 Array = NDArray[Any]
 
 MAX_ASYMMETRY = 0.1  # of a flexibility measured in place and scaled to a unit diagonal
+MAX_SOLUTION = 1e13  # largest displacement by loads of order 1 on freedoms with a stiffness of 1
 
 
 @dataclass(frozen=True)
@@ -63,26 +64,38 @@ def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
         else:
             follow[t.freedoms, columns], rigidly_tied[t.freedoms] = t.motion, True
     K, free = fe_model.stiffness, np.flatnonzero(~rigidly_tied)
-    unit = float(abs(K).max())
     G = np.concatenate([row for row, _ in means]) if means else np.zeros((0, n))
-    ask = unit * G @ follow
+    residual = G @ follow  # of the ties' equations
     for k, (_, columns) in enumerate(means):
-        ask[6 * k : 6 * k + 6, columns] -= unit * np.eye(6)
-    g = ss.csr_array(unit * G[:, free])
-    A = ss.csc_array(ss.block_array([[K[free][:, free], g.T], [g, None]]))
-    B = np.concatenate([(K @ follow)[free], ask])
-    try:
-        X = -splu(A).solve(B) if len(B) else B
-    except RuntimeError:
-        X = np.full_like(B, np.nan)
-    if not np.abs(A @ X + B).max(initial=0.0) <= 1e-6 * np.abs(B).max(initial=0.0):
+        residual[6 * k : 6 * k + 6, columns] -= np.eye(6)
+    stiffness = K.diagonal()[free]
+    unit = 1.0 / np.sqrt(np.where(stiffness > 0, stiffness, 1.0))  # of each freedom: its stiffness becomes 1
+    G = G[:, free] * unit
+    size = np.linalg.norm(G, axis=1)
+    g, scale = ss.csr_array(G / size[:, None]), ss.diags_array(unit)
+    A = ss.csc_array(ss.block_array([[scale @ K[free][:, free] @ scale, g.T], [g, None]]))
+    B = np.concatenate([unit[:, None] * (K @ follow)[free], residual / size[:, None]])
+    X = -_solved(A, B)
+    if not np.isfinite(X).all():
         raise CondensationError(
             f"{fe_model.name}: unsupported freedoms among its {n} once the sections' frames are fixed: "
             "nodes without elements, loose parts, or rotations without stiffness? drop them from the model"
         )
     displacements = follow.copy()
-    displacements[free] += X[: len(free)]
+    displacements[free] += unit[:, None] * X[: len(free)]
     return Condensed(follow.T @ (K @ follow) + B.T @ X, displacements)
+
+
+def _solved(A: ss.csc_array, B: Array) -> Array:
+    """A⁻¹ B; not finite if A is singular: an entry of the solution for a random right side exceeds ``MAX_SOLUTION``."""
+    if not len(B):
+        return B
+    load = np.random.default_rng(1965).uniform(1.0, 2.0, (len(B), 1))
+    try:
+        X = splu(A).solve(np.hstack([B, load]))
+    except RuntimeError:  # a pivot is exactly zero
+        return np.full_like(B, np.nan)
+    return X[:, :-1] if np.abs(X[:, -1]).max() < MAX_SOLUTION else np.full_like(B, np.nan)
 
 
 def segment(fe_model: FiniteElements, a: Tie, b: Tie) -> Segment:

@@ -113,7 +113,7 @@ def rigid(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str) ->
     Raises:
         CondensationError: no freedoms, or too few to determine the six motions of a frame.
     """
-    return _tie(fe_model, freedoms, frame, name, "rigid", np.ones(len(freedoms)))
+    return _tie(fe_model, freedoms, frame, name, "rigid")
 
 
 def average(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, weights: Array | None = None) -> Tie:
@@ -134,7 +134,7 @@ def average(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, 
     """
     moves = fe_model.directions[freedoms] < 3
     if len(freedoms) == 6 and not moves.all():  # a beam model's node is the section, whatever the weights
-        return _tie(fe_model, freedoms, frame, name, "average", np.ones(6))
+        return _tie(fe_model, freedoms, frame, name, "average")
     shares = (fe_model.mass[freedoms] if weights is None else weights)[moves]
     if shares.ndim == 1 and not (shares > 0).all():
         raise CondensationError(
@@ -162,12 +162,19 @@ def section(fe_model: FiniteElements, frame: Array, name: str, kind: Kind = "ave
     return rigid(fe_model, freedoms, frame, name) if kind == "rigid" else average(fe_model, freedoms, frame, name)
 
 
-def _tie(fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, kind: Kind, weights: Array) -> Tie:
+def _tie(
+    fe_model: FiniteElements, freedoms: Index, frame: Array, name: str, kind: Kind, weights: Array | None = None
+) -> Tie:
+    """The tie; without ``weights``, a rotation counts as much as the displacement that it causes at the frame's origin."""
     if not len(freedoms):
         raise CondensationError(
             f"section {name!r}: a tie with no nodes: select the nodes of {fe_model.name} that lie on it"
         )
-    R = motion(fe_model.points[freedoms], fe_model.directions[freedoms], frame)
+    points, directions = fe_model.points[freedoms], fe_model.directions[freedoms]
+    R = motion(points, directions, frame)
+    if weights is None:
+        squared = float(((points - frame[:3, 3]) ** 2).sum(1).max())
+        weights = np.where(directions < 3, 1.0, squared or 1.0)
     weighed = R.T * weights if weights.ndim == 1 else R.T @ weights
     gram = weighed @ R
     size = np.sqrt(np.diagonal(gram))
