@@ -5,7 +5,7 @@
     import southwell
 
     blade = southwell.read("deck.dat")
-    southwell.modes(blade, omega=1.267).to_frame()
+    southwell.modes(blade, rpm=12.1).to_frame()
     southwell.campbell(blade, rpm="0:12.1:1.1").plot()
     southwell.verify(blade, rpm="0,12.1").to_frame()
 

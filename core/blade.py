@@ -30,7 +30,7 @@ COUPLING_ROUNDING = 1e-12
 """Largest off-diagonal entry, of a matrix scaled to a unit diagonal, that counts as rounding."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Blade:
     """A rotating blade on its hub; properties vary linearly between stations.
 
@@ -89,6 +89,13 @@ class Blade:
     def length(self) -> float:
         """Arc length of the reference curve, m."""
         return float(self.stations[-1])
+
+    def __repr__(self) -> str:
+        mass = float(np.trapezoid(self.mass[:, 0, 0], self.stations)) + float(self.tip_mass[0, 0])
+        angles = (("precone", self.precone), ("pitch", self.pitch))
+        more = [f"{name} {np.degrees(angle):.4g}°" for name, angle in angles if angle]
+        facts = [f"{self.length:.6g} m", f"hub radius {self.hub_radius:.6g} m", *more, f"{mass:.6g} kg"]
+        return f"<Blade {self.name}: {', '.join(facts)}, {len(self.stations)} stations>"
 
 
 def _on_stations(blade: Blade) -> tuple[float, ...]:

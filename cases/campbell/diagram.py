@@ -18,6 +18,7 @@ from .encounters import Encounter, encounters
 from .labels import Labels, labels
 from .lines import line_of
 from .margins import Margin, Southwell, margins, southwell
+from .required import TEN_PERCENT, RequiredMargin
 from .resonances import Range, Resonance, Unlisted, near_crossings, resonances, unlisted
 from .tracking import Solver, Tracks, track
 
@@ -40,7 +41,7 @@ class CampbellRequest:
         modes: number of modes, from the lowest.
         per_rev: excitation harmonics n, multiples of the rotor speed.
         operating: (lowest, highest) operating speed, rad/s; within ``speeds``.
-        margin: required relative distance of a mode from n per revolution within the operating range.
+        margin: required distance of a mode from n per revolution within the operating range.
         elements: number of elements of equal length; by default as many at each speed as ``accuracy`` requires.
         accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
         allow_large_strain: accept steady strains above ``core.element.measures.LARGEST_STRAIN``.
@@ -52,7 +53,7 @@ class CampbellRequest:
     modes: int = 6
     per_rev: tuple[int, ...] = (1, 2, 3, 4, 5, 6)
     operating: Range | None = None
-    margin: float = 0.1
+    margin: RequiredMargin = TEN_PERCENT
     elements: int | None = None
     accuracy: float = 1e-6
     allow_large_strain: bool = False

@@ -1,8 +1,8 @@
 """Margins from n per revolution, and fits of Southwell's law.
 
-A margin is ``ω / (n Ω) − 1``: the distance of the natural frequency from the excitation frequency, relative to the
-latter. The guideline cited by Park et al. (2010) requires only that they be separated; the user chooses the margin.
-Park et al. use 10 %.
+A margin is ``ω / (n Ω) − 1``, the distance of the natural frequency from the excitation frequency relative to the
+latter, or ``ω − n Ω`` in rad/s, as the required margin is given. The guideline cited by Park et al. (2010) requires only
+that they be separated; the user chooses the margin. Park et al. use 10 %.
 """
 
 from collections.abc import Sequence
@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .lines import Line
+from .required import RequiredMargin
 from .resonances import Range, Resonance
 from .tracking import Tracks
 
@@ -34,7 +35,9 @@ class Southwell:
 
 @dataclass(frozen=True)
 class Margin:
-    """Margin of a track from n per revolution over the operating range, relative to n Ω, positive above it.
+    """Margin of a track from n per revolution over the operating range, positive above it.
+
+    Margins and their uncertainty are relative to n Ω or in rad/s, as the required margin.
 
     Attributes:
         track: index of the track.
@@ -75,7 +78,7 @@ def margins(
     met: Sequence[Resonance],
     per_rev: Sequence[int],
     operating: Range | None,
-    required: float,
+    required: RequiredMargin,
 ) -> tuple[Margin, ...]:
     """Margins of each line that spans the operating range, for each n; ``met``: resonances; ``required``: required margin."""
     if operating is None:
@@ -87,11 +90,13 @@ def margins(
             continue  # a track that does not span the range has no margin over it
         for n in per_rev:
             at = np.unique([max(low, 1e-9 * high), *[o for o in np.sqrt(line.squares) if low < o < high], high])
-            values = np.array([line.at(min(max(o, line.first), line.last)) / (n * o) - 1.0 for o in at])
+            unit = 1.0 if required.unit else n * at
+            values = (np.array([line.at(min(max(o, line.first), line.last)) for o in at]) - n * at) / unit
             inside = [r.omega for r in met if (r.track, r.per_rev) == (t, n) and low <= r.omega <= high]
             k = int(np.abs(values).argmin())
             least, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
-            sure = 0.0 if inside else (1.0 + least) * line.uncertainty(min(max(where, line.first), line.last))
-            kept = bool(abs(least) - sure >= required)
+            frequency = least + (n * where if required.unit else 1.0)
+            sure = 0.0 if inside else frequency * line.uncertainty(min(max(where, line.first), line.last))
+            kept = bool(abs(least) - sure >= required.value)
             out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, sure, kept))
     return tuple(out)

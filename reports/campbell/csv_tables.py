@@ -57,7 +57,10 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         for r in diagram.resonances
     ]
     margins = [
-        (diagram.labels[m.track], m.per_rev, m.low, m.high, m.least, m.omega, f"{m.uncertainty:.6g}", int(m.kept))
+        (
+            *(diagram.labels[m.track], m.per_rev, m.low, m.high, m.least, m.omega),
+            *(f"{m.uncertainty:.6g}", "rad/s" if diagram.request.margin.unit else "relative", int(m.kept)),
+        )
         for m in diagram.margins
     ]
     met = [
@@ -87,7 +90,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             resonances,
         ),
         "margins.csv": (
-            ("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "uncertainty", "kept"),
+            ("name", "per_rev", "at_low", "at_high", "least", "omega_least_rad_s", "uncertainty", "measure", "kept"),
             margins,
         ),
         "encounters.csv": (

@@ -124,7 +124,7 @@ def _below(diagram: Campbell, units: Units) -> str:
         words[0] += f", {len(diagram.tracks.omega) - len(request.speeds)} intermediate speeds where modes come close"
     if request.operating:
         low, high = (o * units.speeds for o in request.operating)
-        words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {100 * request.margin:.3g} %")
+        words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {request.margin}")
     if any(request.gravity):
         words.append("under gravity")
     if request.load:

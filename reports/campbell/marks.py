@@ -121,7 +121,7 @@ def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Uni
     grid = np.unique(np.concatenate([x[(x > low) & (x < high)], np.linspace(low, high, 401)]))
     line = np.interp(grid, x, y)
     rays = np.outer(request.per_rev, grid)
-    close = (np.abs(line - rays) < request.margin * rays).any(0)
+    close = (np.abs(line - rays) < np.vectorize(request.margin.distance)(rays)).any(0)
     shown = np.where(close, line, np.nan)
     axes.plot(
         grid * units.speeds, shown * units.frequencies, color=RED, lw=6.5, alpha=0.22, solid_capstyle="butt", zorder=3
@@ -182,11 +182,8 @@ def legend(diagram: Campbell) -> list[Line2D]:
     if any(r.apart == 0.0 for r in diagram.resonances):
         out.append(Line2D([], [], ms=5.5, mfc=RED, mec="white", label="resonance in operation", **dot))
     if any(not m.kept for m in diagram.margins):
-        out.append(
-            Line2D(
-                [], [], color=RED, lw=6.5, alpha=0.22, label=f"within {100 * diagram.request.margin:.3g} % of n per rev"
-            )
-        )
+        label = f"within {diagram.request.margin} of n per rev"
+        out.append(Line2D([], [], color=RED, lw=6.5, alpha=0.22, label=label))
     for kind, marker, size in (("veering", "D", 6.5), ("crossing", "x", 5)):
         if any(e.kind == kind for e in diagram.encounters):
             label = f"{kind} of modes"

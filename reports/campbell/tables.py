@@ -15,6 +15,7 @@ from tabulate import tabulate
 from ...cases.campbell.diagram import Campbell, Margin
 from ...cases.campbell.encounters import Encounter
 from ...cases.campbell.margins import Southwell
+from ...cases.campbell.required import UNITS, RequiredMargin
 from ...cases.campbell.sweep import Named
 from ...core.participation import MIXED, spoken
 from ..shared import table_columns
@@ -110,17 +111,20 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
     rows = []
     for t in range(diagram.tracks.count):
         mine = {m.per_rev: m for m in diagram.margins if m.track == t}
-        fields = [_margin(mine[n]) if mine else "not tracked to here" for n in request.per_rev]
+        fields = [_margin(mine[n], request.margin) if mine else "not tracked to here" for n in request.per_rev]
         rows.append((diagram.labels.over(t, low, high), *fields))
+    unit = request.margin.unit
+    measure = f"in {unit}" if unit else "in % of n per revolution (far: 1000 % or more)"
     note = (
-        f"Distance of each mode above n per revolution {_at(units, low)} … {units.at(high)}, in % of n per revolution "
-        f"(far: 1000 % or more). {TOO_NEAR}: below {100 * request.margin:.3g} % at some speed; a change of sign: a crossing."
+        f"Distance of each mode above n per revolution {_at(units, low)} … {units.at(high)}, {measure}. "
+        f"{TOO_NEAR}: below {request.margin} at some speed; a change of sign: a crossing."
     )
     return Sheet("Margins in the operating range", ("mode", *[f"{n}P" for n in request.per_rev]), tuple(rows), note)
 
 
-def _margin(m: Margin) -> str:
-    ends = "…".join(dict.fromkeys((_percent(m.low), _percent(m.high))))
+def _margin(m: Margin, required: RequiredMargin) -> str:
+    shown = _percent if not required.unit else lambda value: f"{value / UNITS[required.unit]:+.3g}".replace("-", "−")
+    ends = "…".join(dict.fromkeys((shown(m.low), shown(m.high))))
     return ends if m.kept else f"{TOO_NEAR} {ends}"
 
 
@@ -294,7 +298,7 @@ def verdict(diagram: Campbell, units: Units) -> str:
     but = f" Not judged, because not tracked over the whole range: {', '.join(rest)}." if rest else ""
     if not broken:
         every = "Every other mode" if rest else "Every mode"
-        return f"{every} stays at least {100 * request.margin:.3g} % away from every n per revolution at {over}.{but}"
+        return f"{every} stays at least {request.margin} away from every n per revolution at {over}.{but}"
     said = []
     for t in dict.fromkeys(m.track for m in broken):
         mine = [m for m in broken if m.track == t]
@@ -302,7 +306,7 @@ def verdict(diagram: Campbell, units: Units) -> str:
         near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
         words = [
             f"crosses {met}" if met else "",
-            f"comes within {100 * request.margin:.3g} % of {near}" if near else "",
+            f"comes within {request.margin} of {near}" if near else "",
         ]
         said.append(f"{diagram.labels.over(t, low, high)} {' and '.join(w for w in words if w)}")
     return f"{TOO_NEAR} At {over}, {'; '.join(said)}.{but}"

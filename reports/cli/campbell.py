@@ -17,6 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from ...cases.campbell import confirmation
 from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
+from ...cases.campbell.required import required_margin
 from ...cases.campbell.tracking import Solver
 from ...cases.input.changes import parse
 from ...cases.input.default_case import default_case
@@ -100,7 +101,7 @@ def command(
     operating
         Operating range, as `6.9:12.1`, in the unit of the speeds. Margins are judged over it.
     margin
-        Required distance from nP over the operating range, relative to nP: `10%`, `10` or `0.1`.
+        Required distance from nP over the operating range: relative to nP (`10%`, `10` or `0.1`), or absolute (`5Hz`).
     elements
         Number of beam elements of equal length. Default: at each speed as many as --accuracy requires.
     accuracy
@@ -160,7 +161,7 @@ def command(
             modes=modes,
             per_rev=options.per_rev(per_rev),
             operating=options.operating(operating, units, speeds) if operating else None,
-            margin=options.margin(margin),
+            margin=required_margin(margin, "--margin"),
             elements=elements,
             accuracy=accuracy,
             allow_large_strain=allow_large_strain,

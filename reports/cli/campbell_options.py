@@ -95,15 +95,3 @@ def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, 
             f"--operating: {text!r}: beyond the speeds, {first:g} to {last:g} {units.speed}: widen those, or correct it"
         )
     return low / units.speeds, high / units.speeds
-
-
-def margin(text: str) -> float:
-    """The margin as a fraction: ``10%``, or ``10`` (1 and above is a percentage), or ``0.1``."""
-    try:
-        value = float(text.removesuffix("%"))
-    except ValueError:
-        raise CaseError(f"--margin: {text!r} is neither a percentage nor a fraction, as in 10% or 0.1") from None
-    value *= 0.01 if text.endswith("%") or value >= 1 else 1.0
-    if not 0 <= value < 1:
-        raise CaseError(f"--margin: {text!r}: needs 0 to 100 % of n per revolution, as in 10% or 0.1")
-    return value

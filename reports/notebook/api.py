@@ -4,13 +4,14 @@ from collections.abc import Sequence
 from contextlib import ExitStack
 from math import radians
 from pathlib import Path
-from typing import Literal
+from typing import Literal, TypeVar
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...cases.campbell import diagram
 from ...cases.campbell.diagram import CampbellRequest
+from ...cases.campbell.required import required_margin
 from ...cases.input import files, library, readers
 from ...cases.input.default_case import MODES, default_case
 from ...cases.input.errors import CaseError
@@ -28,6 +29,8 @@ from ..shared.units import RAD_S, RPM, Units
 from .results import CampbellResult, ModesResult, VerifyResult
 
 Array = NDArray[np.float64]
+
+Given = TypeVar("Given")
 
 Speeds = str | ArrayLike
 """Rotor speeds: a number, a sequence, a range ``"first:last:step"``, or a list ``"0,5,10"``."""
@@ -94,10 +97,11 @@ def read(
 
 def modes(
     blade: Blade,
-    omega: float,
-    elements: int | None = None,
-    count: int = 10,
+    omega: float | None = None,
     *,
+    rpm: float | None = None,
+    modes: int = 10,
+    elements: int | None = None,
     accuracy: float = 1e-6,
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
@@ -106,13 +110,14 @@ def modes(
     load: Array | None = None,
     allow_large_strain: bool = False,
 ) -> ModesResult:
-    """Compute the lowest modes of a blade at one rotor speed with the in-house solver; see ``core.solve.modes``.
+    """Compute the lowest modes of a blade at one rotor speed with Southwell's own solver, as ``southwell modes``.
 
     Args:
         blade: the blade.
         omega: rotor speed, rad/s.
+        rpm: rotor speed in rpm, instead.
+        modes: number of modes, from the lowest.
         elements: number of beam elements of equal length; by default as many as ``accuracy`` requires.
-        count: number of modes.
         accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
         mass: ``consistent``, or ``half_end`` (lumped, Park et al. 2010).
         stiffness: ``corotational``, or ``body_fixed`` (Park et al. 2010).
@@ -122,13 +127,15 @@ def modes(
         allow_large_strain: accept steady strains above 20 %.
 
     Raises:
+        CaseError: no speed, or two.
         ValueError, SteadyStateError, UnstableError, EigensolverError: as ``core.solve.modes``.
     """
-    found = solve.modes(
+    given, units = _given(rpm, omega)
+    result = solve.modes(
         blade,
-        omega,
+        given / units.speeds,
         elements,
-        count,
+        modes,
         accuracy=accuracy,
         mass=mass,
         stiffness=stiffness,
@@ -137,7 +144,7 @@ def modes(
         load=load,
         allow_large_strain=allow_large_strain,
     )
-    return ModesResult(**vars(found), blade=blade)
+    return ModesResult(**vars(result), blade=blade, units=units)
 
 
 def campbell(
@@ -148,10 +155,12 @@ def campbell(
     modes: int = 6,
     per_rev: Sequence[int] = (1, 2, 3, 4, 5, 6),
     operating: tuple[float, float] | None = None,
-    margin: float = 0.1,
-    elements: int = 50,
+    margin: str | float = "10%",
+    elements: int | None = None,
+    accuracy: float = 1e-6,
+    allow_large_strain: bool = False,
 ) -> CampbellResult:
-    """Compute the Campbell diagram of a blade: its modes tracked over rotor speed, and their margins.
+    """Compute the Campbell diagram of a blade, as ``southwell campbell``: modes tracked over rotor speed, and their margins.
 
     Args:
         blade: the blade.
@@ -160,15 +169,25 @@ def campbell(
         modes: number of modes, from the lowest.
         per_rev: excitation orders n (nP).
         operating: lowest and highest operating speed, in the unit of the speeds.
-        margin: required distance from nP over the operating range, relative to nP.
-        elements: number of beam elements.
+        margin: required distance from nP over the operating range: relative to nP (``"10%"``, 0.1) or absolute (``"5Hz"``).
+        elements: number of beam elements of equal length; by default at each speed as many as ``accuracy`` requires.
+        accuracy: largest relative uncertainty of a frequency, if ``elements`` is not given.
+        allow_large_strain: accept steady strains above 20 %.
 
     Raises:
-        CaseError: no speeds or fewer than two, an operating range outside them, or no steady state at a speed.
+        CaseError: no speeds or fewer than two, an operating range outside them, another margin, or no steady state at a speed.
     """
     speeds, units = _speeds(rpm, omega)
-    low_high = None if operating is None else (operating[0] / units.speeds, operating[1] / units.speeds)
-    request = CampbellRequest(tuple(speeds.tolist()), modes, tuple(per_rev), low_high, margin, elements)
+    request = CampbellRequest(
+        speeds=tuple(speeds.tolist()),
+        modes=modes,
+        per_rev=tuple(per_rev),
+        operating=None if operating is None else (operating[0] / units.speeds, operating[1] / units.speeds),
+        margin=required_margin(margin),
+        elements=elements,
+        accuracy=accuracy,
+        allow_large_strain=allow_large_strain,
+    )
     return CampbellResult(diagram.campbell(blade, request, diagram.solver(blade, request, at=units.at)), units)
 
 
@@ -237,11 +256,18 @@ def _case(blade: Blade | str, rpm: Speeds | None, omega: Speeds | None, modes: i
     return blade
 
 
+def _given(rpm: Given | None, omega: Given | None) -> tuple[Given, Units]:
+    """The one of both that is given, and its unit."""
+    if rpm is not None and omega is None:
+        return rpm, RPM
+    if omega is not None and rpm is None:
+        return omega, RAD_S
+    raise CaseError("speeds: give rpm or omega, one of them, as in rpm='0:12:1'")
+
+
 def _speeds(rpm: Speeds | None, omega: Speeds | None) -> tuple[Array, Units]:
     """Speeds (k,) in rad/s, ascending, and the unit in which they were given."""
-    if (rpm is None) == (omega is None):
-        raise CaseError("speeds: give rpm or omega, one of them, as in rpm='0:12:1'")
-    given, units = (rpm, RPM) if omega is None else (omega, RAD_S)
+    given, units = _given(rpm, omega)
     try:
         values = speed_range(given) if isinstance(given, str) else np.atleast_1d(np.asarray(given, dtype=float))
     except (ValueError, TypeError) as error:

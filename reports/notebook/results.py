@@ -8,6 +8,7 @@ import pandas as pd
 from matplotlib.axes import Axes
 
 from ...cases.campbell.diagram import Campbell
+from ...cases.campbell.required import UNITS
 from ...cases.judge.pairing import MOTIONS, aligned, weights
 from ...cases.judge.results import Run
 from ...core.blade import Blade
@@ -39,9 +40,11 @@ class ModesResult(Modes):
 
     Attributes:
         blade: the blade; the other attributes are those of ``Modes``.
+        units: in which the speed was given.
     """
 
     blade: Blade = field(kw_only=True)
+    units: Units = field(kw_only=True, default=RAD_S)
 
     def to_frame(self) -> pd.DataFrame:
         """One row per mode: ``mode``, ``name``, ``frequency_hz``, ``frequency_rad_s``, ``uncertainty`` (relative),
@@ -80,10 +83,10 @@ class ModesResult(Modes):
     def __repr__(self) -> str:
         hertz = ", ".join(f"{f:.4g}" for f in self.frequencies[:4] / (2 * np.pi))
         more = ", …" if len(self.frequencies) > 4 else ""
-        return f"<{len(self.frequencies)} modes of {self.blade.name} at {RAD_S.at(self.omega)}: {hertz}{more} Hz>"
+        return f"<{len(self.frequencies)} modes of {self.blade.name} at {self.units.at(self.omega)}: {hertz}{more} Hz>"
 
     def _repr_html_(self) -> str:
-        return _html(f"{self.blade.name} at {RAD_S.at(self.omega)}", self.to_frame())
+        return _html(f"{self.blade.name} at {self.units.at(self.omega)}", self.to_frame())
 
 
 @dataclass(frozen=True, repr=False)
@@ -112,9 +115,16 @@ class CampbellResult:
 
     def margins(self) -> pd.DataFrame:
         """One row per mode and order n: ``mode``, ``per_rev``, ``low``, ``high`` (margins at both ends of the operating range),
-        ``kept``; relative to n per revolution. Empty without an operating range."""
+        ``kept``; relative to n per revolution, or in the unit of the required margin. Empty without an operating range."""
+        unit = UNITS.get(self.diagram.request.margin.unit, 1.0)
         rows = [
-            {"mode": self.diagram.labels[m.track], "per_rev": m.per_rev, "low": m.low, "high": m.high, "kept": m.kept}
+            {
+                "mode": self.diagram.labels[m.track],
+                "per_rev": m.per_rev,
+                "low": m.low / unit,
+                "high": m.high / unit,
+                "kept": m.kept,
+            }
             for m in self.diagram.margins
         ]
         return pd.DataFrame(rows, columns=["mode", "per_rev", "low", "high", "kept"])

@@ -13,6 +13,7 @@ from scipy.special import jn_zeros
 from southwell.cases.campbell import confirmation
 from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell
 from southwell.cases.campbell.prestress import STANDARD_GRAVITY, gravity
+from southwell.cases.campbell.required import RequiredMargin, required_margin
 from southwell.cases.campbell.sweep import sweep
 from southwell.cases.campbell.tracked import tracked
 from southwell.cases.input import library
@@ -110,8 +111,23 @@ def test_a_margin_is_judged_by_what_the_user_asks() -> None:
     """Flap at 2 rad/s is √10 rad/s, 58 % above 1P."""
     exact = np.sqrt(10.0) / 2.0 - 1.0
     for margin, kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
-        (found,) = (m for m in diagram(margin=margin, per_rev=(1,)).margins if m.track == 0)
+        (found,) = (m for m in diagram(margin=RequiredMargin(margin), per_rev=(1,)).margins if m.track == 0)
         assert found.kept is kept
+
+
+def test_a_margin_in_hertz_is_the_distance_itself() -> None:
+    """Flap √(4 + 1.5 Ω²) at 1 and 2 rad/s: 1.3452 and 1.1623 rad/s above 1P, 0.18498 Hz at the nearer end."""
+    ends = [np.sqrt(4 + 1.5 * o**2) - o for o in (1.0, 2.0)]
+    exact = ends[1] / (2 * np.pi)
+    for text, kept in ((f"{exact - 1e-6}Hz", True), (f"{exact + 1e-6} Hz", False), (f"{ends[1] - 1e-6}rad/s", True)):
+        found = diagram(margin=required_margin(text), per_rev=(1,))
+        (flap,) = (m for m in found.margins if m.track == 0)
+        assert (flap.low, flap.high) == pytest.approx(ends, rel=1e-9)
+        assert flap.kept is kept
+    assert "stays at least 0.1 Hz away" in verdict(diagram(margin=required_margin("0.1Hz"), per_rev=(1,)), RAD_S)
+    margins = next(s for s in sheets(found, RAD_S) if s.title.startswith("Margins"))
+    assert margins.rows[0][1] == "+1.35…+1.16"
+    assert "in rad/s" in margins.note
 
 
 def test_lines_are_confirmed_at_the_stated_ends_of_the_operating_range() -> None:
@@ -316,7 +332,7 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
 
 
 def test_the_answer_in_one_line() -> None:
-    assert verdict(diagram(margin=0.05, per_rev=(1,)), RAD_S) == (
+    assert verdict(diagram(margin=RequiredMargin(0.05), per_rev=(1,)), RAD_S) == (
         "Every mode stays at least 5 % away from every n per revolution at 1 to 2 rad/s."
     )
     phrase = verdict(diagram(operating=(1.1, 2.0)), RAD_S)  # edge at 1.1 rad/s: 3.099, 6 % below 3P

@@ -53,7 +53,10 @@ def beam(tmp_path: Path) -> Path:
         ),
         ("campbell park-cantilever --rpm 0:30:10 --tilt 5", "without --azimuth"),
         ("campbell park-cantilever --rpm 0:30:10 --elements 20001", "--elements. Must be <= 20000"),
-        ("campbell park-cantilever --margin wide", "--margin: 'wide' is neither a percentage nor a fraction"),
+        (
+            "campbell park-cantilever --margin wide",
+            "--margin: 'wide' is neither a percentage, a fraction nor a frequency",
+        ),
         ("campbell park-cantilever --margin 100", "--margin: '100': needs 0 to 100 %"),
         ("campbell park-cantilever --margin=-5%", "--margin: '-5%': needs 0 to 100 %"),
         ("campbell park-cantilever --modes 0", "--modes"),

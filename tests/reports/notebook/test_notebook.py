@@ -1,9 +1,11 @@
 """What a notebook gets: the same numbers as core's, in tables and figures that show themselves."""
 
+import json
 from pathlib import Path
 
 import matplotlib as mpl
 import numpy as np
+import pandas as pd
 import pytest
 from matplotlib.axes import Axes
 
@@ -11,6 +13,7 @@ import southwell
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import results
 from southwell.core import solve
+from southwell.reports.cli.app import main
 
 mpl.use("agg")
 
@@ -23,7 +26,7 @@ def blade() -> southwell.Blade:
 
 
 def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) -> None:
-    found, core = southwell.modes(blade, OMEGA, count=3), solve.modes(blade, OMEGA, count=3)
+    found, core = southwell.modes(blade, OMEGA, modes=3), solve.modes(blade, OMEGA, count=3)
     frame = found.to_frame()
     assert isinstance(found, southwell.Modes)
     assert frame["name"].tolist() == ["edgewise 1", "flapwise 1", "edgewise 2"]
@@ -37,6 +40,33 @@ def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) ->
     assert [np.asarray(line.get_xydata())[-1].tolist() for line in axes.lines] == [
         [blade.length, pytest.approx(1.0)]
     ] * 2
+
+
+def test_python_and_the_command_take_the_same_names_and_give_the_same_numbers(
+    blade: southwell.Blade, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The API used 50 elements where the command refines until the accuracy is reached."""
+    frame = southwell.modes(blade, rpm=30, modes=2, accuracy=1e-5).to_frame()
+    with pytest.raises(SystemExit):
+        main(["modes", "park-cantilever", "--rpm", "30", "--modes", "2", "--accuracy", "1e-5", "--json"])
+    rows = json.loads(capsys.readouterr().out)
+    assert frame["frequency_rad_s"].tolist() == pytest.approx([row["frequency_rad_s"] for row in rows], rel=1e-13)
+    diagram = southwell.campbell(blade, rpm="0:60:30", modes=2, operating=(30, 60), margin="1Hz")
+    line = "campbell park-cantilever --rpm 0:60:30 --modes 2 --operating 30:60 --margin 1Hz"
+    with pytest.raises(SystemExit):
+        main([*line.split(), "-o", str(tmp_path)])
+    written = pd.read_csv(tmp_path / "campbell.csv").query("omega_rad_s > 6")["frequency_rad_s"]
+    at_end = diagram.to_frame().loc[60.0].to_numpy() * 2 * np.pi
+    np.testing.assert_allclose(np.sort(at_end), np.sort(written), rtol=1e-12)
+    margins = pd.read_csv(tmp_path / "margins.csv")
+    np.testing.assert_allclose(diagram.margins()["high"] * 2 * np.pi, margins["at_high"], rtol=1e-9)
+    assert set(margins["measure"]) == {"rad/s"}
+
+
+def test_a_blade_has_a_short_text() -> None:
+    """The cantilever of Park et al.; it used to print every array."""
+    blade = southwell.uniform_blade("beam", 5.0, 0.5, EA=1e8, GJ=1e5, EI_y=1e5, EI_z=1e5, mass=3.0)
+    assert repr(blade) == "<Blade beam: 5 m, hub radius 0.5 m, 15 kg, 2 stations>"
 
 
 def test_a_diagram_has_the_frequencies_of_each_speed_in_the_unit_given(blade: southwell.Blade) -> None:
@@ -86,6 +116,8 @@ def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blad
         (lambda b: southwell.read("park-blade"), "name one of"),
         (lambda b: southwell.read("park-cantilever", length=3.0), "leave out"),
         (lambda b: southwell.campbell(b), "give rpm or omega"),
+        (lambda b: southwell.modes(b), "give rpm or omega"),
+        (lambda b: southwell.campbell(b, rpm="0:9:3", margin="wide"), "margin: 'wide' is neither"),
         (lambda b: southwell.campbell(b, rpm="0:9:3", omega="0:9:3"), "give rpm or omega"),
         (lambda b: southwell.campbell(b, rpm=[3.0, 1.0]), "ascend"),
         (lambda b: southwell.campbell(b, rpm="fast"), "neither a speed"),
