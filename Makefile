@@ -55,7 +55,7 @@ docs: $(INSTALLED)
 $(INSTALLED): pyproject.toml setup.py $(KERNELS)
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,readers,dev]'
 	mkdir -p $(HERE) && ln -sfn ../.. $(HERE)/southwell
 	touch $@
 
