@@ -9,6 +9,7 @@ from ...core.blade import Blade
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
 from ..judge.pairing import aligned, pair, weights
+from ..judge.spectrum import of_blade
 from .diagram import CampbellRequest, solver
 
 
@@ -62,7 +63,8 @@ def _at(blade: Blade, found: Modes, other: Modes, modes: int, weight: np.ndarray
     indices = range(min(modes, len(found.frequencies)))
     names = numbered(families(participation(found, blade)))
     out = []
-    for k, partner in zip(indices, pair(found, other, indices, weight), strict=True):
+    partners = pair(of_blade(found, weight), of_blade(other), indices)
+    for k, partner in zip(indices, partners, strict=True):
         theirs, sure = np.nan, np.nan
         if partner.mode is not None:
             theirs, sure = (

@@ -11,7 +11,7 @@ from ...core.modes import Modes
 from ...references.protocol import registry
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
-from ..plan import columns
+from ..solve import works
 from .seeding import Fault, Trial
 from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 
@@ -98,13 +98,13 @@ def _found_at(path: str, code: str = "exact-beam") -> Callable[[Any], Any]:
 
 
 def _crashes(_: Any) -> Any:
-    return lambda name, blade, runs, limits: (
+    return lambda name, blade, runs, *how: (
         [Failure("crashed", "the code's process ended with signal SIGSEGV")] * len(runs)
     )
 
 
 def _adapter(name: str, what: str, size: str, make: Any, trial: Trial = PARK) -> Fault:
-    return Fault(name, "adapter", what, size, ((columns, "answers", make),), trial)
+    return Fault(name, "adapter", what, size, ((works, "answers", make),), trial)
 
 
 REST = Trial("park-cantilever", (0.0,), ("exact-beam",))

@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
-from ...core.modes import Modes
 from ..input import blades
-from ..judge import pairing, verdict
+from ..judge import convergence, pairing, refined, same, verdict
 from ..judge.pairing import Pair
+from ..judge.spectrum import Spectrum
 from ..judge.uncertainty import Estimate
-from ..solve import cells, published_tables, reference, refinement
+from ..solve import published_tables, reference
 from .seeding import Fault, Seam, Trial
 from .trials import FAST, PARK
 
@@ -20,8 +20,8 @@ BMODES = Trial("windpact-1.5/bmodes", (6.283185307179586,), ())
 def by_number(right: Any) -> Any:
     """Modes are paired by their number."""
 
-    def wrong(reference: Modes, other: Modes, wanted: Sequence[int], weight: Any, least: float = 0.8) -> list[Pair]:
-        return [Pair(i if i < len(other.frequencies) else None, 1.0) for i, _ in enumerate(wanted)]
+    def wrong(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
+        return [Pair(i if i < len(other.values) else None, 1.0) for i, _ in enumerate(indices)]
 
     return wrong
 
@@ -29,8 +29,8 @@ def by_number(right: Any) -> Any:
 def next_one(right: Any) -> Any:
     """The partner of a mode is the one after it."""
 
-    def wrong(reference: Modes, other: Modes, *args: Any) -> list[Pair]:
-        last = len(other.frequencies) - 1
+    def wrong(reference: Spectrum, other: Spectrum, *args: Any) -> list[Pair]:
+        last = len(other.values) - 1
         return [p if p.mode is None else replace(p, mode=min(p.mode + 1, last)) for p in right(reference, other, *args)]
 
     return wrong
@@ -39,8 +39,8 @@ def next_one(right: Any) -> Any:
 def anything_goes(right: Any) -> Any:
     """Any MAC is accepted."""
 
-    def wrong(ours: Modes, other: Modes, wanted: Sequence[int], weight: Any, least: float = 0.0) -> list[Pair]:
-        return right(ours, other, wanted, weight, 0.0)
+    def wrong(ours: Spectrum, other: Spectrum, indices: Sequence[int], least: float = 0.0) -> list[Pair]:
+        return right(ours, other, indices, 0.0)
 
     return wrong
 
@@ -128,7 +128,7 @@ def _numbers(right: Any) -> Any:
 
 def judge(make: Any) -> tuple[Seam, ...]:
     """The judge is replaced wherever it is called."""
-    return (cells, "judge", make), (verdict, "judge", make)
+    return (refined, "judge", make), (same, "judge", make), (verdict, "judge", make)
 
 
 def _judging(name: str, area: Any, what: str, size: str, seams: tuple[Seam, ...], blinds: str) -> Fault:
@@ -137,21 +137,21 @@ def _judging(name: str, area: Any, what: str, size: str, seams: tuple[Seam, ...]
 
 FAULTS = (
     Fault("paired by number", "pairing", "modes are paired by their number", "other families' frequencies",
-          ((refinement, "pair", by_number),), FAST),
+          ((convergence, "pair", by_number),), FAST),
     Fault("paired with the next", "pairing", "an index one too high", "next mode's frequency",
-          ((refinement, "pair", next_one),), PARK),
+          ((convergence, "pair", next_one),), PARK),
     Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
           ((pairing, "_norm", lambda right: lambda a, momenta: 4.0 * right(a, momenta)),), PARK),
     _judging("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",
-             ((refinement, "pair", anything_goes), (cells, "pair", anything_goes)), "twist reversed in the adapter"),
+             ((convergence, "pair", anything_goes), (refined, "pair", anything_goes)), "twist reversed in the adapter"),
     _judging("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",
-             ((cells, "_still", inferred),), "lost column"),
+             ((refined, "_still", inferred),), "lost column"),
     Fault("never sure", "uncertainty", "the uncertainty is always unknown", "all cells",
-          ((refinement, "from_refinement", _sure(None)),), PARK),
+          ((convergence, "from_refinement", _sure(None)),), PARK),
     Fault("unsure by one percent", "uncertainty", "the uncertainty is always 1 %", "all cells",
-          ((refinement, "from_refinement", _sure(0.01)),), PARK),
+          ((convergence, "from_refinement", _sure(0.01)),), PARK),
     Fault("limit off", "uncertainty", "limits are 0.2 % too large for codes with an order", "limits of core +0.2 %",
-          ((refinement, "widened", _extrapolated),), PARK),
+          ((convergence, "widened", _extrapolated),), PARK),
     _judging("every number passes", "verdict", "every verdict is pass", "all cells", judge(_passes),
              "no hub radius"),
     _judging("target in percent", "verdict", "the target is a hundred times as large", "0.1 % becomes 10 %",

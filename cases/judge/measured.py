@@ -5,9 +5,11 @@ the standard uncertainties of the latter are known: ``u_val² = u_num² + u_inpu
 ``E ± k u_val``. A measurement is not a code: it neither confirms nor contradicts one.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from math import hypot, isfinite
 
+from .cells import Head, empty, mode_fields
+from .reference import Reference
 from .results import Cell
 from .verdict import percent, unsigned
 
@@ -86,3 +88,45 @@ def visible(cell: Cell) -> float:
     if cell.difference is None or cell.uncertainty is None or not cell.frequency or not cell.reference:
         return 0.0
     return max(abs(cell.difference) - cell.uncertainty, 0.0) * cell.reference / cell.frequency
+
+
+@dataclass(frozen=True)
+class Datum:
+    """A measured frequency.
+
+    Attributes:
+        value: D, rad/s.
+        data, inputs: relative standard uncertainties of the datum, and of the simulation due to its inputs.
+    """
+
+    value: float
+    data: float
+    inputs: float
+
+
+def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datum) -> Cell:
+    """The cell of a measured frequency of the ``i``-th mode that the case compares; never evidence.
+
+    The numerical uncertainty of core's answer is a bound and is used as the standard uncertainty. If it is unknown, no
+    statement is made.
+    """
+    cell = replace(
+        empty(head, omega, "measured", ""),
+        frequency=datum.value,
+        **mode_fields(reference, i),
+    )
+    base = reference.core.modes[i].estimate
+    if base is None:
+        return replace(cell, verdict="not applicable", reason="core has no frequency to compare with")
+    found = Validation(
+        base.value,
+        datum.value,
+        (base.uncertainty or 0.0) * base.value,
+        datum.inputs * base.value,
+        datum.data * datum.value,
+    )
+    difference, uncertainty = found.relative
+    cell = replace(cell, reference=base.value, difference=difference)
+    if base.uncertainty is None:
+        return replace(cell, reason=f"not judged: u_num is unknown ({base.note})")
+    return replace(cell, uncertainty=uncertainty, reason=explained(found))

@@ -1,9 +1,9 @@
 """Pairing of the modes of two codes by mass-weighted shape, never by number.
 
-The modal assurance criterion (Allemang and Brown, 1982) uses the blade's mass as the metric, so that displacements and
-rotations can be added: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. ``W`` holds, at each common station, the 4×4 mass of
-the blade near it, for the three displacements and the rotation about x. Shapes are complex: gyroscopic phase
-differences affect the MAC.
+The modal assurance criterion (Allemang and Brown, 1982) uses the mass as the metric, so that displacements and rotations can
+be added: ``MAC = |aᴴWb|² / (aᴴWa · bᴴWb)``. For a blade, ``W`` holds, at each common station, the 4×4 mass of the blade near
+it, for the three displacements and the rotation about x; for a mechanism, the mass matrix over its coordinates. Shapes are
+complex: gyroscopic phase differences affect the MAC.
 """
 
 from collections.abc import Sequence
@@ -17,11 +17,10 @@ from scipy.optimize import linear_sum_assignment
 from ...core import gauss
 from ...core.blade import Blade, mass_at, twist_at
 from ...core.modes import STATIONS, Modes
+from .spectrum import Spectrum, on_common
 
 Array = NDArray[np.float64]
-
-MOTIONS = ("axial", "edgewise", "flapwise", "torsion")
-"""The four columns of a shape for a blade along x: motion along x, y, z, and rotation about x."""
+Complex = NDArray[np.complex128]
 
 LEAST_MAC = 0.8
 """Below this MAC two shapes are not the same mode (customary value; at 0.8 the angle between them is 27°)."""
@@ -74,24 +73,24 @@ def weights(blade: Blade) -> Array:
     return np.einsum("ns,sij->nij", shares, turn @ mass @ turn.swapaxes(1, 2))
 
 
-def mac(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> Array:
-    """MAC (m, k) of shapes ``a`` (m, 21, 4) with ``b`` (k, 21, 4); 0 where a shape has no modal mass."""
+def mac(a: Complex, b: Complex, weight: Array) -> Array:
+    """MAC (m, k) of shapes ``a`` (m, s, n) with ``b`` (k, s, n); 0 where a shape has no modal mass."""
     momenta = [_momenta(shapes, weight) for shapes in (a, b)]
     norms = np.outer(*(_norm(shapes, momentum) for shapes, momentum in zip((a, b), momenta, strict=True)))
     cross = _products(a, momenta[1])
     return np.divide(np.abs(cross) ** 2, norms, out=np.zeros_like(norms), where=norms > 0)
 
 
-def _momenta(shapes: NDArray[np.complex128], weight: Array) -> NDArray[np.complex128]:
+def _momenta(shapes: Complex, weight: Array) -> Complex:
     return (weight @ shapes[..., None])[..., 0]
 
 
-def _products(shapes: NDArray[np.complex128], momenta: NDArray[np.complex128]) -> NDArray[np.complex128]:
-    """(m, k) of shapes (m, 21, 4) with momenta W b (k, 21, 4)."""
+def _products(shapes: Complex, momenta: Complex) -> Complex:
+    """(m, k) of shapes (m, s, n) with momenta W b (k, s, n)."""
     return np.tensordot(shapes.conj(), momenta, ((1, 2), (1, 2)))
 
 
-def _norm(shapes: NDArray[np.complex128], momenta: NDArray[np.complex128]) -> Array:
+def _norm(shapes: Complex, momenta: Complex) -> Array:
     return (shapes.conj() * momenta).sum((1, 2)).real
 
 
@@ -121,53 +120,55 @@ def aligned(modes: Modes, weight: Array, gap: float = DOUBLE) -> Modes:
     return replace(modes, shapes=shapes)
 
 
-def pair(reference: Modes, other: Modes, wanted: Sequence[int], weight: Array, least: float = LEAST_MAC) -> list[Pair]:
-    """Partners in ``other`` of the reference's modes ``wanted``.
+def pair(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: float = LEAST_MAC) -> list[Pair]:
+    """Partners in ``other`` of the reference's modes ``indices``, by the shapes over their common degrees of freedom.
 
-    One assignment over all modes of both maximises the sum of MACs. Modes of the same frequency are compared as a subspace and
+    One assignment over all modes of both maximises the sum of MACs. Modes of the same eigenvalue are compared as a subspace and
     matched in order of frequency; so are modes of nearly the same frequency if the MAC of one of them is below ``least``, the
     MAC below which two shapes are not partners.
     """
-    table = mac(reference.shapes, other.shapes, weight)
+    ours, theirs, weight = on_common(reference, other)
+    table = mac(ours, theirs, weight)
     rows, columns = linear_sum_assignment(-table)
     partner = dict(zip(rows.tolist(), columns.tolist(), strict=True))
-    found: dict[int, Pair] = {}
-    for group in groups(reference.frequencies):
-        same = float(np.ptp(reference.frequencies[group])) <= DOUBLE * reference.frequencies[group[-1]]
+    frequencies, pairs = reference.frequencies, dict[int, Pair]()
+    for group in groups(frequencies):
+        values = reference.values[group]
+        same = float(np.abs(values - values[0]).max()) <= DOUBLE * frequencies[group[-1]]
         if same or any(table[k, partner[k]] < least for k in group if k in partner):
-            found.update(_as_subspace(group, partner, reference, other, weight, least))
-    return [found.get(k) or _alone(table[k], partner.get(k), other, least) for k in wanted]
+            pairs.update(_as_subspace(group, partner, ours, theirs, weight, least))
+    return [pairs.get(k) or _alone(table[k], partner.get(k), other.frequencies, least) for k in indices]
 
 
 def _as_subspace(
-    group: list[int], partner: dict[int, int], reference: Modes, other: Modes, weight: Array, least: float
+    group: list[int], partner: dict[int, int], ours: Complex, theirs: Complex, weight: Array, least: float
 ) -> dict[int, Pair]:
     if len(group) == 1 or not all(k in partner for k in group):
         return {}
-    theirs = sorted(partner[k] for k in group)
-    likeness = _subspace(reference.shapes[group], other.shapes[theirs], weight)
+    others = sorted(partner[k] for k in group)
+    likeness = _subspace(ours[group], theirs[others], weight)
     if likeness < least:
         return {}
     note = f"compared as a subspace of {len(group)} close modes"
-    return {k: Pair(mode, likeness, note) for k, mode in zip(group, theirs, strict=True)}
+    return {k: Pair(mode, likeness, note) for k, mode in zip(group, others, strict=True)}
 
 
-def _alone(row: Array, mode: int | None, other: Modes, least: float) -> Pair:
+def _alone(row: Array, mode: int | None, frequencies: Array, least: float) -> Pair:
     if not len(row):
         return Pair(None, 0.0, "no partner: the code returned no modes")
     if mode is None or row[mode] < least:
         best = int(row.argmax())
-        nearest = f"its most similar mode, at {other.frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"
+        nearest = f"its most similar mode, at {frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"
         return Pair(None, float(row[best]), f"no partner: {nearest}")
     rivals = np.delete(row, mode)
     if rivals.max(initial=0.0) < RIVAL_MAC:
         return Pair(mode, float(row[mode]))
-    second = float(np.delete(other.frequencies, mode)[rivals.argmax()])
-    apart = abs(second - other.frequencies[mode]) > DEGENERATE * second
+    second = float(np.delete(frequencies, mode)[rivals.argmax()])
+    apart = abs(second - frequencies[mode]) > DEGENERATE * second
     return Pair(mode, float(row[mode]), f"ambiguous: MAC {rivals.max():.2f} with {second:.6g} rad/s too", bool(apart))
 
 
-def _subspace(a: NDArray[np.complex128], b: NDArray[np.complex128], weight: Array) -> float:
+def _subspace(a: Complex, b: Complex, weight: Array) -> float:
     """cos² of the largest principal angle between two subspaces of equal dimension; 0 if shapes are linearly dependent.
 
     The eigenvalues of ``(aᴴWa)⁻¹ aᴴWb (bᴴWb)⁻¹ bᴴWa`` are the cos² of all angles (Hotelling, 1936: canonical correlations).

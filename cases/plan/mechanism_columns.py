@@ -26,12 +26,12 @@ from ...references.protocol.worker import MechanismAnswer as Answer
 from ...references.protocol.worker import mechanism_answers as answers
 from ...references.theories import blade_formulae
 from ..input.mechanism_schema import ClosedForm
+from ..judge.cells import Head, Rows, empty, failed
 from ..judge.pairing import LEAST_MAC
-from ..judge.results import Cell, Verdict
+from ..judge.results import Cell
 from ..judge.uncertainty import ROUNDING
 from ..judge.verdict import judge, unsigned
-from ..solve.cells import Head, empty, failed
-from .columns import Column, Rows, failing_work, not_installed
+from .column import Column, absent_work, failing_work, not_installed
 from .mechanism_case import MechanismCase, Turning
 
 _BY_HAND = Independence(
@@ -103,16 +103,12 @@ def _work(head: Head, variant: Turning, code: Description, limits: Limits) -> Wo
     if code.failure:
         return failing_work(head, code.failure)
     if not code.mechanisms:
-        return partial(_absent, head, "not applicable", "the code takes blades, not mechanisms")
+        return absent_work(head, "not applicable", "the code takes blades, not mechanisms")
     if code.version is None:
         return failing_work(head, not_installed(code))
     return partial(
         _compared, head, variant, partial(_ask, code.asked, code.version or "", variant.described.guess, limits)
     )
-
-
-def _absent(head: Head, verdict: Verdict, reason: str, core: Sequence[tuple[float, Reference]]) -> Rows:
-    return [empty(head, omega, verdict, reason) for omega, _ in core], []
 
 
 def _ask(

@@ -7,9 +7,9 @@ from msgspec import UNSET
 from scipy.integrate import trapezoid
 
 from ...core.blade import Blade, clamped
+from ...references.protocol.interface import MOTIONS
 from ..input.properties import farthest
 from ..input.schema import Case, Variant
-from ..judge.pairing import MOTIONS
 from ..judge.results import Setting, Unit
 from ..judge.verdict import unsigned
 from .mechanism_case import MechanismCase, setting

@@ -16,11 +16,15 @@ from ...core.effects import ALL_EFFECTS
 from ...core.participation import MIXED
 from ...references.protocol.process import Failure
 from ..input.schema import Compare, Variant
+from ..judge.cells import Head, Rows, empty
+from ..judge.measured import Datum, measured
+from ..judge.printed import printed
+from ..judge.reference import Reference
 from ..judge.results import Cell
 from ..judge.uncertainty import Estimate
-from ..solve.cells import Datum, Head, empty, measured, printed
-from ..solve.reference import Reference, references
-from .columns import Column, References, Rows
+from ..solve.reference import references
+from ..solve.works import References
+from .column import Column
 from .user_results import Given, UserResults, at
 
 
@@ -64,7 +68,7 @@ def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Ce
     f, core = cell.frequency, reference.core
     off = [abs(f / m.estimate.value - 1.0) if m.estimate and f else inf for m in core.modes]
     best = off.index(min(off))
-    mixed = any(name.startswith(MIXED) for name in core.every[: core.wanted.indices[max(k, best)] + 1])
+    mixed = any(name.startswith(MIXED) for name in core.spectrum.labels[: core.indices[max(k, best)] + 1])
     if cell.verdict != "fail" or not row.family or off[best] > cell.target or not mixed:
         return cell
     reason = (
@@ -112,6 +116,6 @@ def _without_partner(head: Head, omega: float, row: Given, reference: Reference)
 
 def _place(row: Given, reference: Reference) -> int | None:
     """Index of a row's mode among the modes that the case compares; None if it is not compared."""
-    found: tuple[object, ...] = reference.core.names if row.family else reference.core.wanted.indices
+    found: tuple[object, ...] = reference.core.names if row.family else reference.core.indices
     wanted = f"{row.family} {row.mode}" if row.family else row.mode - 1
     return found.index(wanted) if wanted in found else None

@@ -24,10 +24,10 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core.participation import MIXED
+from ...references.protocol.interface import MOTIONS
 from ..input import files
 from ..input.errors import CaseError, nearest
 from ..input.schema import Variant
-from ..judge.pairing import MOTIONS
 from ..judge.uncertainty import Estimate, from_print
 
 SPEED = {"speed [rad/s]": 1.0, "speed [rpm]": math.pi / 30, "speed [gamma]": 1.0}

@@ -14,8 +14,9 @@ from ...core.effects import Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
+from ..judge.reference import Reference
+from ..judge.spectrum import Spectrum
 from . import core_solver
-from .reference import Reference
 
 DIGITS = 1e-10
 """Relative difference up to which two answers are equal."""
@@ -25,7 +26,7 @@ UNCONVERGED = 1e-7
 
 
 def copied(
-    blade: Blade, effects: Effects, answers: Sequence[tuple[float, Reference, Modes]]
+    blade: Blade, effects: Effects, answers: Sequence[tuple[float, Reference, Spectrum]]
 ) -> tuple[int, float] | None:
     """The number of elements at which every answer equals core's, and the largest relative difference; None if they do not.
 
@@ -46,7 +47,7 @@ def _differences(
     effects: Effects,
     mass: Mass,
     stiffness: Measure,
-    answers: Sequence[tuple[float, Reference, Modes]],
+    answers: Sequence[tuple[float, Reference, Spectrum]],
 ) -> float | None:
     """The largest relative difference of the compared modes from core's with as many elements.
 
@@ -55,7 +56,7 @@ def _differences(
     largest, error = 0.0, 0.0
     for omega, reference, answer in answers:
         (mine,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
-        indices = list(reference.core.wanted.indices)
+        indices = list(reference.core.indices)
         if not isinstance(mine, Modes) or min(len(mine.frequencies), len(answer.frequencies)) <= max(indices):
             return None
         values = mine.frequencies[indices]

@@ -2,7 +2,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import groupby
 
 import numpy as np
@@ -18,9 +18,13 @@ from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer, Run
 from ..input.errors import NO_STATE
 from ..input.schema import Compare, Discretisation
+from ..judge import spectrum
+from ..judge.convergence import Compared, RefinedMode, follow
 from ..judge.pairing import Array, aligned, weights
+from ..judge.reference import MARGIN, Converged
+from ..judge.spectrum import Spectrum
 from ..judge.uncertainty import widened
-from .refinement import RefinedMode, Refining, Wanted, follow, solve
+from .refinement import Refining, solve
 
 SURE = 5e-5
 """Core is refined until its relative uncertainty is at most this: a quarter of the limit for a code."""
@@ -31,34 +35,8 @@ COARSEST, LARGEST_START, FINEST = 15, 100, 960
 JUMP = 1e-4
 """Intervals shorter than this fraction of the blade's length are steps of the properties."""
 
-MARGIN = 4
-"""Number of modes solved above the highest one wanted, so that each can find its partner."""
-
 DEEPER = 3
 """Factor on the number of modes for the one retry when too few modes qualify."""
-
-
-@dataclass(frozen=True)
-class Converged:
-    """Core's modes at one speed, with the compared modes, their estimates and dominant motions in the same order.
-
-    ``every`` has the names of all modes, such as ``flapwise 2``, also of those that are not compared.
-    """
-
-    wanted: Wanted
-    modes: tuple[RefinedMode, ...]
-    every: tuple[str, ...]
-    motions: tuple[str, ...]
-
-    @property
-    def names(self) -> tuple[str, ...]:
-        """Names of the compared modes."""
-        return tuple(self.every[k] for k in self.wanted.indices)
-
-    @property
-    def count(self) -> int:
-        """Number of modes to request from another solver."""
-        return max(self.wanted.indices) + 1 + MARGIN
 
 
 def answers(
@@ -135,40 +113,45 @@ def _converged(
     blade: Blade, speeds: Sequence[float], compare: Compare, effects: Effects, weight: Array, count: int
 ) -> dict[float, Converged | Failure | int]:
     """As ``converged``, by speed, from ``count`` modes; if too few of them qualify, their number."""
-    known: dict[tuple[float, int], tuple[Wanted, Array]] = {}
+    raw: dict[tuple[float, int], Modes] = {}
+    chosen: dict[tuple[float, int], tuple[Compared, Array]] = {}
 
-    def ask(runs: Sequence[Run]) -> list[Answer]:
-        return answers(blade, runs, effects=effects)
+    def ask(runs: Sequence[Run]) -> list[spectrum.Answer]:
+        given = answers(blade, runs, effects=effects)
+        raw.update({(modes.omega, modes.elements): modes for modes in given if isinstance(modes, Modes)})
+        return spectrum.of_blades(given)
 
-    def named(omega: float, solved: Sequence[Modes]) -> tuple[Wanted, Array]:
+    def compared(omega: float, solved: Sequence[Spectrum]) -> tuple[Compared, Array]:
         """The modes to compare, and the energy fractions of all, by the finest answer."""
-        if (omega, len(solved)) not in known:
-            finest = aligned(solved[-1], weight)
+        elements = solved[-1].elements
+        if (omega, elements) not in chosen:
+            finest = aligned(raw[omega, elements], weight)
             energies = participation(finest, blade)
-            known[omega, len(solved)] = Wanted(finest, qualifying(energies, compare), weight), energies
-        return known[omega, len(solved)]
+            labelled = replace(spectrum.of_blade(finest, weight), labels=numbered(families(energies)))
+            chosen[omega, elements] = Compared(labelled, qualifying(energies, compare)), energies
+        return chosen[omega, elements]
 
     plan = refining(blade)
-    refined = solve(ask, speeds, plan, count, lambda omega, solved: named(omega, solved)[0])
+    refined = solve(ask, speeds, plan, count, lambda omega, solved: compared(omega, solved)[0])
     out: dict[float, Converged | Failure | int] = {}
-    enough: dict[float, tuple[Modes, ...]] = {}
+    enough: dict[float, tuple[Spectrum, ...]] = {}
     for omega, one in zip(speeds, refined, strict=True):
         if not one.answers:
             out[omega] = one.failure or Failure("refused", "no answer")
-        elif (found := len(named(omega, one.answers)[0].indices)) < compare.modes:
-            out[omega] = found
+        elif (qualified := len(compared(omega, one.answers)[0].indices)) < compare.modes:
+            out[omega] = qualified
         else:
             enough[omega] = one.answers
     meshes = [(omega, (solved[-2:][0].elements, solved[-1].elements)) for omega, solved in enough.items()]
     biases = rigid_strain_bias(blade, meshes, count, effects)
     for (omega, solved), (factor, unsure) in zip(enough.items(), biases, strict=True):
-        target, energies = named(omega, solved)
+        target, energies = compared(omega, solved)
         modes = tuple(
             _corrected(one, float(factor[k]), float(unsure[k]))
             for k, one in zip(target.indices, follow(solved, target, plan.order), strict=True)
         )
         motions = tuple(FAMILIES[k] for k in energies[list(target.indices)].argmax(1))
-        out[omega] = Converged(target, modes, numbered(families(energies)), motions)
+        out[omega] = Converged(target, modes, motions)
     return out
 
 

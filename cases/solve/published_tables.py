@@ -7,16 +7,19 @@ import numpy as np
 
 from ...core.blade import Blade, sample, uniform
 from ...core.effects import Effects
-from ...references.protocol.worker import Answer, Run
+from ...references.protocol.worker import Run
 from ...references.published import Datum, Series, load
 from ..input.schema import Discretisation
+from ..judge.cells import Head
+from ..judge.convergence import follow
+from ..judge.printed import Coarse, excused, printed
+from ..judge.reference import Reference
 from ..judge.results import Cell, Level
+from ..judge.spectrum import Answer, of_blades
 from ..judge.uncertainty import from_print
 from ..judge.verdict import unsigned
-from .cells import Coarse, Head, excused, printed
 from .core_solver import answers, as_given
-from .reference import Reference
-from .refinement import follow, solve
+from .refinement import solve
 
 
 @dataclass(frozen=True)
@@ -111,17 +114,17 @@ def discretised(
     blade: Blade, omega: float, effects: Effects, reference: Reference, source: Discretisation
 ) -> list[Coarse | None]:
     """Core's answers for the reference's modes in the source's discretisation, with limits; None without a partner."""
-    n, wanted = source.elements, reference.core.wanted
+    n, compared = source.elements, reference.core.compared
 
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        return answers(blade, runs, source.mass, source.stiffness, effects)
+        return of_blades(answers(blade, runs, source.mass, source.stiffness, effects))
 
     plan = as_given(source)
-    (refinements,) = solve(ask, [omega], plan, reference.core.count, lambda *_: wanted)
-    fine = follow(refinements.answers, wanted, plan.order)
+    (refinements,) = solve(ask, [omega], plan, reference.core.count, lambda *_: compared)
+    fine = follow(refinements.answers, compared, plan.order)
     found: list[Coarse | None] = []
     for mode in fine:
         levels = dict(mode.history)
         there = mode.estimate is not None and n in levels
         found.append(Coarse(levels[n], mode.estimate.value) if there and mode.estimate else None)
-    return found or [None] * len(wanted.indices)
+    return found or [None] * len(compared.indices)

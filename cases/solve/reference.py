@@ -1,34 +1,16 @@
 """The reference of a code: core with the effects that the code keeps, and the change due to the missing effects."""
 
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...references.protocol.process import Failure
 from ..input.schema import Compare
 from ..judge.pairing import pair
+from ..judge.reference import Converged, Reference
 from ..judge.verdict import Effect
-from .core_solver import Converged, converged
-
-
-@dataclass(frozen=True)
-class Reference:
-    """Core's modes at one speed with given effects.
-
-    Attributes:
-        core: converged modes.
-        full: frequencies of the same modes with all effects, rad/s; None if no mode with all effects corresponds.
-        likeness: MAC of each mode with its counterpart with all effects.
-        effects: for each mode, its change due to each effect that is left out; empty if the change due to all of
-            them together is within the target.
-    """
-
-    core: Converged
-    full: tuple[float | None, ...]
-    likeness: tuple[float, ...]
-    effects: tuple[tuple[Effect, ...], ...]
-
+from .core_solver import converged
 
 MAJORITY = 0.5
 """Least MAC of core's modes with and without an effect that also changes shapes: at most one mode can reach it."""
@@ -122,8 +104,7 @@ def _partners(mine: Converged, other: Converged | Failure) -> tuple[tuple[float 
     """Frequencies in ``other`` of the modes of ``mine``, and the MACs of the shapes."""
     if isinstance(other, Failure):
         return (None,) * len(mine.modes), (0.0,) * len(mine.modes)
-    theirs = dict(zip(other.wanted.indices, other.modes, strict=True))
-    wanted = mine.wanted
-    found = pair(wanted.reference, other.wanted.reference, wanted.indices, wanted.weight, least=MAJORITY)
-    estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in found]
-    return tuple(e.value if e else None for e in estimates), tuple(p.mac for p in found)
+    theirs = dict(zip(other.indices, other.modes, strict=True))
+    partners = pair(mine.spectrum, other.spectrum, mine.indices, least=MAJORITY)
+    estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in partners]
+    return tuple(e.value if e else None for e in estimates), tuple(p.mac for p in partners)

@@ -16,6 +16,7 @@ from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Compare, Variant
 from ..judge.pairing import aligned, pair, weights
+from ..judge.spectrum import of_blade
 from ..solve.core_solver import COARSEST, qualifying
 from .core_faults import CORE_FAULTS, Solve
 
@@ -79,9 +80,9 @@ def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
     energies = participation(right, blade)
-    wanted, names = qualifying(energies, compare), numbered(families(energies))
-    partners = [p.mode for p in pair(right, wrong, wanted, weight)]
+    indices, names = qualifying(energies, compare), numbered(families(energies))
+    partners = [p.mode for p in pair(of_blade(right, weight), of_blade(wrong), indices)]
     return tuple(
         Changed(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
-        for k, p in zip(wanted, partners, strict=True)
+        for k, p in zip(indices, partners, strict=True)
     )

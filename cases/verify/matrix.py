@@ -19,9 +19,11 @@ from ...references.protocol.process import Failure, Limits, raised
 from ...references.protocol.store import StoreError
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
+from ..judge.cells import Rows, failing
 from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
 from ..plan import mechanism_columns
-from ..plan.columns import Column, Rows, columns, failing
+from ..plan.column import Column
+from ..plan.columns import columns
 from ..plan.mechanism_case import MechanismCase, Turning
 from ..plan.names import unique
 from ..plan.settings import settings

@@ -14,14 +14,14 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.process import Failure
-from ...references.protocol.worker import Answer
 from ...references.protocol.worker import Run as Asked
 from ..input.schema import Compare, Variant
+from ..judge.cells import Head, Rows, empty, without_reference
+from ..judge.refined import refined
 from ..judge.results import Cell
+from ..judge.spectrum import Answer, of_blade
 from ..judge.verdict import judge, percent, unsigned
-from ..plan.columns import without_reference
 from ..solve import published_tables
-from ..solve.cells import Head, Rows, empty, refined
 from ..solve.reference import References, felt, references
 from ..solve.refinement import Refining, solve
 from .controls import SAME_MODE, Wrong
@@ -86,7 +86,7 @@ def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
     finest = 4 * solver.levels[-1]
     refining = Refining(solver.levels, solver.order, finest) if solver.refines else Refining((1,), 0, 1, bracket=True)
     count = max(r.core.count for _, r in core)
-    by_speed = {omega: r.core.wanted for omega, r in core}
+    by_speed = {omega: r.core.compared for omega, r in core}
     refinements = solve(
         lambda runs: _answers(solver, variant.blade, runs), list(by_speed), refining, count, lambda w, _: by_speed[w]
     )
@@ -104,7 +104,7 @@ def _answers(solver: UserSolver, blade: Blade, runs: Sequence[Asked]) -> list[An
     for omega, elements, count in runs:
         found = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
         try:
-            out.append(_modes(omega, elements, *found, exact=not solver.refines))
+            out.append(of_blade(_modes(omega, elements, *found, exact=not solver.refines)))
         except (TypeError, ValueError) as error:
             out.append(Failure("nonsense", f"not (frequencies, shapes): {error}"))
     return out

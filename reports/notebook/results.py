@@ -9,11 +9,12 @@ from matplotlib.axes import Axes
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.required import UNITS
-from ...cases.judge.pairing import MOTIONS, aligned, weights
+from ...cases.judge.pairing import aligned, weights
 from ...cases.judge.results import Run
 from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered, participation
+from ...references.protocol.interface import MOTIONS
 from ..campbell import page, tables
 from ..campbell.figure import lines
 from ..shared import summary

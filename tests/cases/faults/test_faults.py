@@ -12,9 +12,8 @@ import pytest
 from southwell.cases.faults import mechanisms, seeding, table
 from southwell.cases.faults.table import ALL, BY_NAME, FAST
 from southwell.cases.input.errors import CaseError
-from southwell.cases.judge import results, verdict
+from southwell.cases.judge import printed, refined, results, verdict
 from southwell.cases.judge.results import Control, Run
-from southwell.cases.solve import cells
 from southwell.references.protocol.description import Description
 from southwell.reports.shared import summary
 from southwell.reports.verification import controls as reported
@@ -88,8 +87,8 @@ def test_a_fault_that_does_nothing_is_missed() -> None:
 
 @pytest.mark.slow
 def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(cells, "judge", lambda *_: ("pass", ""))
-    monkeypatch.setattr(cells, "discretised", lambda *_: ("pass", ""))
+    monkeypatch.setattr(refined, "judge", lambda *_: ("pass", ""))
+    monkeypatch.setattr(printed, "discretised", lambda *_: ("pass", ""))
     seeding.faultless.cache_clear()
     (control,) = table.run(["no hub radius"])
     seeding.faultless.cache_clear()

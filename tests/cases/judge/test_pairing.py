@@ -8,6 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from southwell.cases.judge.pairing import aligned, groups, mac, pair, weights
+from southwell.cases.judge.spectrum import Spectrum, of_blade
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.participation import families, participation
@@ -25,8 +26,12 @@ def shape(column: int, waves: float) -> np.ndarray:
     return out
 
 
-def modes(frequencies: list[float], shapes: list[np.ndarray]) -> Modes:
+def blade_modes(frequencies: list[float], shapes: list[np.ndarray]) -> Modes:
     return Modes(10.0, np.array(frequencies), np.array(shapes), 10)
+
+
+def modes(frequencies: list[float], shapes: list[np.ndarray]) -> Spectrum:
+    return of_blade(blade_modes(frequencies, shapes), WEIGHT)
 
 
 REFERENCE = modes([10.0, 15.0, 70.0, 71.0], [shape(CHORD, 1), shape(FLAP, 1), shape(CHORD, 3), shape(FLAP, 3)])
@@ -65,7 +70,7 @@ def test_weights_turn_an_offset_mass_with_twist_and_pitch() -> None:
 def test_order_scale_and_phase_do_not_matter(order: list[int], phases: tuple[float, ...]) -> None:
     shapes = [3.0 * np.exp(1j * phases[k]) * REFERENCE.shapes[k] for k in order]
     other = modes([1.0, 2.0, 3.0, 4.0], shapes)
-    found = pair(REFERENCE, other, range(4), WEIGHT)
+    found = pair(REFERENCE, other, range(4))
     assert [order[p.mode] for p in found if p.mode is not None] == [0, 1, 2, 3]
     assert all(p.mac == pytest.approx(1.0) and not p.note for p in found)
 
@@ -98,7 +103,7 @@ def test_a_degenerate_pair_is_compared_as_a_subspace(angle: float, phase: float)
     c, s, e = np.cos(angle), np.sin(angle), np.exp(1j * phase)
     a, b = reference.shapes[0], reference.shapes[1]
     other = modes([10.001, 10.002, 70.0], [c * a + e * s * b, -s * a + e * c * b, reference.shapes[2]])
-    first, second, third = pair(reference, other, range(3), WEIGHT)
+    first, second, third = pair(reference, other, range(3))
     assert {first.mode, second.mode} == {0, 1}
     assert third.mode == 2
     for one in (first, second):  # at every angle, also where the shapes alone are alike
@@ -110,7 +115,7 @@ def test_a_subspace_that_is_not_the_same_has_no_partner() -> None:
     reference = modes([10.0, 10.0], [shape(CHORD, 1), shape(FLAP, 1)])
     mixed = (shape(CHORD, 1) + shape(FLAP, 1)) / np.sqrt(2)
     other = modes([10.0, 10.0], [mixed, shape(TORSION, 1)])
-    for found in pair(reference, other, range(2), WEIGHT):
+    for found in pair(reference, other, range(2)):
         assert found.mode is None
         assert "no partner: its most similar mode, at 10 rad/s, has MAC" in found.note
 
@@ -118,24 +123,24 @@ def test_a_subspace_that_is_not_the_same_has_no_partner() -> None:
 def test_shapes_that_are_one_and_the_same_twice_are_no_pair() -> None:
     reference = modes([10.0, 10.0], [shape(CHORD, 1), shape(FLAP, 1)])
     mixed = shape(CHORD, 1) + shape(FLAP, 1)
-    assert [p.mode for p in pair(reference, modes([10.0, 10.0], [mixed, mixed]), range(2), WEIGHT)] == [None, None]
+    assert [p.mode for p in pair(reference, modes([10.0, 10.0], [mixed, mixed]), range(2))] == [None, None]
 
 
 def test_distinct_frequencies_are_not_excused_as_a_subspace() -> None:
     turned = [(shape(CHORD, 1) + shape(FLAP, 1)) / np.sqrt(2), (shape(CHORD, 1) - shape(FLAP, 1)) / np.sqrt(2)]
-    found = pair(REFERENCE, modes([10.0, 15.0], turned), [0], WEIGHT)
+    found = pair(REFERENCE, modes([10.0, 15.0], turned), [0])
     assert found[0].mode is None
 
 
 def test_a_missing_mode_has_no_partner_and_does_not_take_another_ones() -> None:
     other = modes([10.0, 70.0, 71.0], [REFERENCE.shapes[k] for k in (0, 2, 3)])
-    found = pair(REFERENCE, other, range(4), WEIGHT)
+    found = pair(REFERENCE, other, range(4))
     assert [p.mode for p in found] == [0, None, 1, 2]
 
 
 def test_a_rival_is_mentioned() -> None:
     rival = 0.75 * REFERENCE.shapes[0] + 0.6 * shape(AXIAL, 1)
-    found = pair(REFERENCE, modes([10.0, 12.0], [REFERENCE.shapes[0], rival]), [0], WEIGHT)
+    found = pair(REFERENCE, modes([10.0, 12.0], [REFERENCE.shapes[0], rival]), [0])
     assert found[0].mode == 0
     assert found[0].note.startswith("ambiguous: MAC 0.61 with 12 rad/s")
     assert found[0].ambiguous
@@ -144,14 +149,14 @@ def test_a_rival_is_mentioned() -> None:
 def test_a_rival_of_nearly_the_same_frequency_is_not_ambiguous() -> None:
     """Two modes 0.1 % apart may be any combination of two shapes."""
     rival = 0.75 * REFERENCE.shapes[0] + 0.6 * shape(AXIAL, 1)
-    (partner,) = pair(REFERENCE, modes([10.0, 10.01], [REFERENCE.shapes[0], rival]), [0], WEIGHT)
+    (partner,) = pair(REFERENCE, modes([10.0, 10.01], [REFERENCE.shapes[0], rival]), [0])
     assert partner.note
     assert not partner.ambiguous
 
 
 def test_no_modes_no_partner() -> None:
-    empty = Modes(0.0, np.zeros(0), np.zeros((0, 21, 4), complex), 1)
-    assert pair(REFERENCE, empty, [0], WEIGHT)[0].mode is None
+    empty = of_blade(Modes(0.0, np.zeros(0), np.zeros((0, 21, 4), complex), 1))
+    assert pair(REFERENCE, empty, [0])[0].mode is None
 
 
 def test_motion_without_mass_is_like_nothing() -> None:
@@ -164,7 +169,7 @@ def test_motion_without_mass_is_like_nothing() -> None:
 def test_equal_frequencies_are_turned_to_one_motion_each(angle: float) -> None:
     c, s = np.cos(angle), np.sin(angle)
     a, b = shape(CHORD, 1), shape(FLAP, 1)
-    turned = aligned(modes([10.0, 10.0], [c * a + s * b, -s * a + c * b]), WEIGHT)
+    turned = aligned(blade_modes([10.0, 10.0], [c * a + s * b, -s * a + c * b]), WEIGHT)
     energies = participation(turned, BLADE)
     assert sorted(families(energies)) == ["edgewise", "flapwise"]
     assert energies.max(1) == pytest.approx([1.0, 1.0])

@@ -12,13 +12,14 @@ from hypothesis import strategies as st
 
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
-from southwell.cases.judge.measured import visible
+from southwell.cases.judge.cells import Head
+from southwell.cases.judge.measured import Datum, measured, visible
+from southwell.cases.judge.reference import Reference
 from southwell.cases.judge.results import Run
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.plan import user_results
 from southwell.cases.plan.user_results import Defaults, UserResults
-from southwell.cases.solve.cells import Datum, Head, measured
-from southwell.cases.solve.reference import Reference, references
+from southwell.cases.solve.reference import references
 from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.reports.cli import app as cli

@@ -10,15 +10,15 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
+from southwell.cases.judge.cells import Head
+from southwell.cases.judge.convergence import Compared, RefinedMode
 from southwell.cases.judge.pairing import Pair
+from southwell.cases.judge.reference import Converged, Reference
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.judge.spectrum import of_blade
 from southwell.cases.judge.uncertainty import Estimate
 from southwell.cases.judge.witnesses import witnesses
 from southwell.cases.plan import user_columns, user_results
-from southwell.cases.solve.cells import Head
-from southwell.cases.solve.core_solver import Converged
-from southwell.cases.solve.reference import Reference
-from southwell.cases.solve.refinement import RefinedMode, Wanted
 from southwell.cases.verify import matrix
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
@@ -231,12 +231,10 @@ def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
 def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Reference:
     """Core's modes at one speed, known by name and frequency only."""
     values = np.array(frequencies)
-    found = Modes(1.0, values, np.zeros((len(names), 21, 4), complex), 10)
-    wanted = Wanted(found, tuple(range(len(names))), np.zeros((21, 4, 4)))
+    spectrum = of_blade(Modes(1.0, values, np.zeros((len(names), 21, 4), complex), 10), np.zeros((21, 4, 4)))
+    compared = Compared(replace(spectrum, labels=numbered(names)), tuple(range(len(names))))
     modes = tuple(RefinedMode(Estimate(f, 1e-9), Pair(k, 1.0), ()) for k, f in enumerate(frequencies))
-    return Reference(
-        Converged(wanted, modes, numbered(names), names), frequencies, (1.0,) * len(names), ((),) * len(names)
-    )
+    return Reference(Converged(compared, modes, names), frequencies, (1.0,) * len(names), ((),) * len(names))
 
 
 @pytest.mark.parametrize(

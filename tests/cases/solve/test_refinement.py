@@ -7,9 +7,11 @@ from itertools import pairwise
 import numpy as np
 import pytest
 
-from southwell.cases.solve.refinement import LEAST, MOST, Refining, Wanted, follow, solve
+from southwell.cases.judge.convergence import Compared, follow
+from southwell.cases.judge.spectrum import Answer, Spectrum, of_blade
+from southwell.cases.solve.refinement import LEAST, MOST, Refining, solve
 from southwell.core.modes import STATIONS, Modes
-from southwell.references.protocol.worker import Answer, Run
+from southwell.references.protocol.worker import Run
 
 ORDER, EXACT = 2, 7.0
 SHAPE = np.zeros((1, len(STATIONS), 4), complex)
@@ -17,8 +19,8 @@ SHAPE[0, :, 2] = STATIONS**2
 WEIGHT = np.tile(np.eye(4), (len(STATIONS), 1, 1))
 
 
-def of(omega: float, elements: int, error: float) -> Modes:
-    return Modes(omega, np.array([EXACT * (1.0 + error)]), SHAPE, elements)
+def of(omega: float, elements: int, error: float) -> Spectrum:
+    return of_blade(Modes(omega, np.array([EXACT * (1.0 + error)]), SHAPE, elements), WEIGHT)
 
 
 def solver(coefficient: Callable[[float], float], asked: list[Run]) -> Callable[[Sequence[Run]], list[Answer]]:
@@ -34,14 +36,14 @@ def solver(coefficient: Callable[[float], float], asked: list[Run]) -> Callable[
 def refined(coefficient: float, cap: int = 10_000) -> list[int]:
     """Elements of the answers at one speed."""
     asked: list[Run] = []
-    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
-    solve(solver(lambda _: coefficient, asked), [1.0], Refining((10, 20, 30), ORDER, cap), 1, lambda *_: wanted)
+    compared = Compared(of(1.0, 1, 0.0), (0,))
+    solve(solver(lambda _: coefficient, asked), [1.0], Refining((10, 20, 30), ORDER, cap), 1, lambda *_: compared)
     return [n for _, n, _ in asked]
 
 
 def uncertainty(coefficient: float, elements: Sequence[int]) -> float:
     answers = [of(1.0, n, coefficient * (n**-2.0 + 5.0 * n**-4.0)) for n in elements]
-    (mode,) = follow(answers, Wanted(of(1.0, 1, 0.0), (0,), WEIGHT), ORDER)
+    (mode,) = follow(answers, Compared(of(1.0, 1, 0.0), (0,)), ORDER)
     assert mode.estimate is not None
     assert mode.estimate.uncertainty is not None
     return mode.estimate.uncertainty
@@ -74,13 +76,13 @@ def test_the_finest_is_the_cap() -> None:
 
 def test_each_speed_is_refined_for_itself() -> None:
     asked: list[Run] = []
-    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
+    compared = Compared(of(1.0, 1, 0.0), (0,))
     solve(
         solver(lambda w: 0.1 if w < 2.0 else 100.0, asked),
         [1.0, 3.0],
         Refining((10, 20, 30), ORDER, 10_000),
         1,
-        lambda *_: wanted,
+        lambda *_: compared,
     )
     assert [run for run in asked if run[0] == 1.0] == [(1.0, n, 1) for n in (10, 20, 30)]
     assert len([run for run in asked if run[0] == 3.0]) > 3
@@ -93,19 +95,19 @@ def test_an_unknown_order_doubles_the_elements() -> None:
         asked.extend(runs)
         return [of(w, n, {10: 0.1, 20: 0.0, 30: 0.05}.get(n, 1e-9 / n)) for w, n, _ in runs]
 
-    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
-    solve(ask, [1.0], Refining((10, 20, 30), ORDER, 60), 1, lambda *_: wanted)
+    compared = Compared(of(1.0, 1, 0.0), (0,))
+    solve(ask, [1.0], Refining((10, 20, 30), ORDER, 60), 1, lambda *_: compared)
     assert [n for _, n, _ in asked] == [10, 20, 30, 60]
 
 
 def test_a_level_with_as_many_elements_as_the_one_before_is_a_failure() -> None:
-    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
+    compared = Compared(of(1.0, 1, 0.0), (0,))
     (found,) = solve(
         lambda runs: [of(w, min(n, 20), 0.0) for w, n, _ in runs],
         [1.0],
         Refining((10, 20, 30), ORDER, 60),
         1,
-        lambda *_: wanted,
+        lambda *_: compared,
     )
     assert found.failure
     assert found.failure.kind == "nonsense"
@@ -115,8 +117,8 @@ def test_a_level_with_as_many_elements_as_the_one_before_is_a_failure() -> None:
 def test_the_uncertainty_that_a_code_states_is_added_to_that_of_refinement() -> None:
     answers = [of(1.0, n, n**-2.0) for n in (10, 20, 40)]
     rounded = [*answers[:-1], replace(answers[-1], uncertainty=np.array([1e-3]))]
-    wanted = Wanted(of(1.0, 1, 0.0), (0,), WEIGHT)
-    (alone,), (with_rounding,) = (follow(a, wanted, ORDER) for a in (answers, rounded))
+    compared = Compared(of(1.0, 1, 0.0), (0,))
+    (alone,), (with_rounding,) = (follow(a, compared, ORDER) for a in (answers, rounded))
     assert alone.estimate
     assert with_rounding.estimate
     assert alone.estimate.uncertainty

@@ -13,10 +13,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from southwell.cases.judge.cells import Head, failed
 from southwell.cases.judge.results import Cell, Control
-from southwell.cases.plan.columns import Column
+from southwell.cases.plan.column import Column
 from southwell.cases.run.executors import Serial
-from southwell.cases.solve.cells import Head, failed
 from southwell.cases.store import stored
 from southwell.cases.store.stored import Stored
 from southwell.core.blade import uniform_blade

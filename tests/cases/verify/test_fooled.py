@@ -14,13 +14,15 @@ from msgspec import structs
 from southwell.cases.faults import seeding
 from southwell.cases.faults.table import BY_NAME
 from southwell.cases.input import library
+from southwell.cases.judge.reference import Reference
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.judge.same import rounding
+from southwell.cases.judge.spectrum import of_blade, of_blades
 from southwell.cases.judge.verdict import bracketed, discretised, judge
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.solve import core_solver
-from southwell.cases.solve.cells import rounding
 from southwell.cases.solve.copies import copied
-from southwell.cases.solve.reference import Reference, references
+from southwell.cases.solve.reference import references
 from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import Mass
@@ -177,10 +179,12 @@ def test_a_copy_is_recognised_although_one_speed_is_converged() -> None:
     case = library.load(PARK)
     blade, speeds = case.variants[0].blade, [5.0, 10.0]
     core = [r for r in references(blade, speeds, case.text.compare, ())[ALL_EFFECTS] if isinstance(r, Reference)]
-    copies = [mesh_modes(blade, omega, n, r.core.count) for omega, n, r in zip(speeds, (960, 8), core, strict=True)]
+    copies = [
+        of_blade(mesh_modes(blade, omega, n, r.core.count)) for omega, n, r in zip(speeds, (960, 8), core, strict=True)
+    ]
     assert copied(blade, ALL_EFFECTS, list(zip(speeds, core, copies, strict=True))) is not None
     assert copied(blade, ALL_EFFECTS, list(zip(speeds[:1], core[:1], copies[:1], strict=True))) is None
-    other = [copies[0], replace(copies[1], frequencies=copies[1].frequencies * (1.0 + 1e-8))]
+    other = [copies[0], replace(copies[1], values=copies[1].values * (1.0 + 1e-8))]
     assert copied(blade, ALL_EFFECTS, list(zip(speeds, core, other, strict=True))) is None
 
 
@@ -257,7 +261,7 @@ def test_rounding_of_a_blade_that_cannot_stretch_is_measured() -> None:
     rigid[:, 0, 0] = np.inf
     coned = replace(blade, stiffness=rigid, precone=np.radians(-2.5))
     (mine,), *scaled = (
-        core_solver.answers(b, [(0.3, 40, 6)], "half_end", "body_fixed")
+        of_blades(core_solver.answers(b, [(0.3, 40, 6)], "half_end", "body_fixed"))
         for b in (coned, *(core_solver.rescaled(coned, factor) for factor in (3.0, 7.0, 0.3, 11.0)))
     )
     first, second, *others = (answer for (answer,) in scaled)

@@ -12,10 +12,10 @@ from southwell.cases.faults import seeding
 from southwell.cases.input import library, mechanisms
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import witnesses
+from southwell.cases.judge.cells import Head
 from southwell.cases.plan import mechanism_case, mechanism_columns
 from southwell.cases.plan.columns import columns as blade_columns
 from southwell.cases.plan.mechanism_columns import cells
-from southwell.cases.solve.cells import Head
 from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import boundary, registry, wire, worker

@@ -1,0 +1,87 @@
+"""A column of one subject: what it is called, what its references keep, and the work that gives its rows.
+
+The work of a column is a picklable function of the speeds and core's references; it returns the rows of the column.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from typing import Any, Literal
+
+from ...core.effects import Effects
+from ...references.protocol.description import Description
+from ...references.protocol.interface import Independence
+from ...references.protocol.process import Failure
+from ..judge.cells import Head, Rows, empty, failing, without_reference
+from ..judge.results import Verdict
+from ..solve.works import References
+
+
+@dataclass(frozen=True)
+class Column:
+    """A column of one blade.
+
+    Attributes:
+        name: as shown while it is being solved.
+        effects: effects that its references keep.
+        head: fields common to its cells.
+        work: function that returns its rows from core's references.
+        origin: declared origin of its answers; None if undeclared.
+        due: where cells are required: at every speed for every mode, at the highest speed, or where it has numbers.
+        adapter: digest of the source of the code; empty for a column of this package.
+        bundled: whether the adapter of the code is part of this package.
+        solves: whether there is anything to solve; not for a code that is absent, broken or declines the blade.
+    """
+
+    name: str
+    effects: Effects
+    head: Head
+    work: Callable[[Any], Rows]
+    origin: Independence | None = None
+    due: Literal["everywhere", "highest speed", "somewhere"] = "everywhere"
+    adapter: str = ""
+    bundled: bool = True
+    solves: bool = True
+
+    @property
+    def storable(self) -> bool:
+        """Whether its digest determines its answer: not for a code of another package or of unknown version."""
+        return self.bundled and bool(self.head.version or self.head.role == "table")
+
+    @property
+    def code(self) -> str:
+        """Name of the code."""
+        return self.head.code
+
+    def __call__(self, speeds: Sequence[float], core: Sequence[Any]) -> Rows:
+        """Rows at all speeds; where core has no reference, the reason. Nothing is solved there."""
+        pairs = list(zip(speeds, core, strict=True))
+        if not self.solves:
+            return self.work(pairs)
+        without = [without_reference(self.head, omega, r) for omega, r in pairs if isinstance(r, Failure)]
+        solvable = [(omega, r) for omega, r in pairs if not isinstance(r, Failure)]
+        cells, levels = self.work(solvable) if solvable else ([], [])
+        return without + cells, levels
+
+
+def not_installed(code: Description) -> Failure:
+    """The failure of a code that is not installed."""
+    return Failure("not installed", f"not installed: {code.hint}")
+
+
+def failing_work(head: Head, failure: Failure) -> Callable[[Any], Rows]:
+    """The work of a code that failed before its first question."""
+    return partial(_failing, head, failure)
+
+
+def absent_work(head: Head, verdict: Verdict, reason: str) -> Callable[[Any], Rows]:
+    """The work of a code that is not asked."""
+    return partial(_absent, head, verdict, reason)
+
+
+def _failing(head: Head, failure: Failure, core: References) -> Rows:
+    return failing(head, failure, [omega for omega, _ in core])
+
+
+def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
+    return [empty(head, omega, verdict, reason) for omega, _ in core], []

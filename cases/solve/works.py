@@ -1,0 +1,117 @@
+"""What a column solves: the answers of a code, or of core in another way, and their rows against core's references."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+
+from ...core.blade import Blade
+from ...core.effects import Effects
+from ...core.element.measures import Measure
+from ...references.protocol.process import Failure, Limits
+from ...references.protocol.worker import Run as Asked
+from ...references.protocol.worker import answers
+from ..input.schema import Discretisation
+from ..judge.cells import Head, Rows, join, joined
+from ..judge.convergence import Compared
+from ..judge.printed import given
+from ..judge.reference import Reference
+from ..judge.refined import refined
+from ..judge.same import rounding, same
+from ..judge.spectrum import Answer, Spectrum, of_blades
+from . import core_solver, paper
+from .copies import copied
+from .refinement import Refining, solve
+
+ELEMENTS = 20
+"""Number of elements of that column, as of the paper's blade, unless a case gives the number of its source. Codes with core's
+discretisation also have it if core is stable with it: refinement does not reduce rounding, which is compared."""
+
+References = Sequence[tuple[float, Reference]]
+"""Rotor speeds, rad/s, and core's references at these speeds."""
+
+
+def refined_code(
+    head: Head, name: str, blade: Blade, effects: Effects, refining: Refining, limits: Limits, core: References
+) -> Rows:
+    """Rows of a code, refined until it can be judged; a copy of core's discretisation is recognised."""
+
+    def ask(runs: Sequence[Asked]) -> list[Answer]:
+        return of_blades(answers(name, blade, runs, limits, head.version))
+
+    count = max(r.core.count for _, r in core)
+    refinements = solve(ask, [omega for omega, _ in core], refining, count, _compared(core))
+    cells, levels = joined(
+        refined(head, omega, r, s, refining.order, refining.bracket)
+        for (omega, r), s in zip(core, refinements, strict=True)
+    )
+    first = [(omega, r, s.answers[0]) for (omega, r), s in zip(core, refinements, strict=True) if s.answers]
+    if head.shares in ("nothing", "undeclared") and (copy := copied(blade, effects, first)):
+        why = f"equals core's answers with {copy[0]} elements to {copy[1]:.0e}: core's discretisation, not independent"
+        cells = [replace(c, shares="discretisation", reason=join(why, c.reason)) for c in cells]
+    return cells, levels
+
+
+def as_in_source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
+    """Rows of core with the discretisation of a source."""
+
+    def ask(runs: Sequence[Asked]) -> list[Answer]:
+        return of_blades(core_solver.answers(blade, runs, source.mass, source.stiffness, source.effects))
+
+    refining = core_solver.as_given(source)
+    count = max(r.core.count for _, r in core)
+    refinements = solve(ask, [omega for omega, _ in core], refining, count, _compared(core))
+    return joined(
+        given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, refinements, strict=True)
+    )
+
+
+def same_code(
+    head: Head, name: str, blade: Blade, finest: int, effects: Effects, limits: Limits, core: References
+) -> Rows:
+    """Rows of a code that is given core's discretisation, with as many elements as core and at the same speeds."""
+
+    def ask(elements: int, scale: float = 1.0) -> list[Answer]:
+        scaled = core_solver.rescaled(blade, scale)
+        return of_blades(core_solver.answers(scaled, runs(elements), "half_end", "body_fixed", effects))
+
+    def runs(elements: int) -> list[Asked]:
+        return [(omega, elements, r.core.count) for omega, r in core]
+
+    elements = min(ELEMENTS, finest)
+    mine = ask(elements)
+    if any(isinstance(answer, Failure) for answer in mine):
+        elements = finest
+        mine = ask(elements)
+    again = [ask(elements, scale) for scale in (3.0, 7.0)]
+    theirs = of_blades(answers(name, blade, runs(elements), limits, head.version))
+    noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
+    rows = zip(core, theirs, mine, noises, strict=True)
+    return joined(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
+
+
+def papers_equations(head: Head, blade: Blade, elements: int, core: References) -> Rows:
+    """Rows of the paper's equations, at the highest speed only: a difference at lower speeds also appears there.
+
+    Where core is not stable with the paper's elements, which have no geometric stiffness, there are half as many again;
+    where it is not stable with these either, elements are corotational.
+    """
+    if not core:
+        return [], []
+    omega, reference = max(core, key=lambda pair: pair[0])
+    meshes: list[tuple[int, Measure]] = [
+        (elements, "body_fixed"),
+        (3 * elements // 2, "body_fixed"),
+        (elements, "corotational"),
+    ]
+    for number, stiffness in meshes:
+        run = (omega, number, reference.core.count)
+        (mine,) = of_blades(core_solver.answers(blade, [run], "half_end", stiffness))
+        if not isinstance(mine, Failure):
+            break
+    (literal,) = of_blades([paper.answer(blade, run, stiffness)])
+    return same(head, omega, reference, literal, mine)
+
+
+def _compared(core: References) -> Callable[[float, Sequence[Spectrum]], Compared]:
+    """The modes requested from a solver: core's modes, whatever the solver answered."""
+    by_speed = {omega: r.core.compared for omega, r in core}
+    return lambda omega, _: by_speed[omega]
