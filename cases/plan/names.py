@@ -10,7 +10,7 @@ from .columns import PAPER
 from .mechanism_case import MechanismCase
 from .user_results import UserResults
 
-OURS = ("core", "core as in source", PAPER, "closed form", "printed tables")
+OURS = ("core", "source's discretisation", PAPER, "closed form", "printed tables")
 """Columns of this package that are not codes, as named in results and in tables."""
 
 

@@ -42,7 +42,7 @@ COMMANDS = (
         VERIFY,
         "codes",
         "cli.listings:code_app",
-        "List the codes: version, what they share with core, how to install them.",
+        "List the codes: version, what they share with Southwell's own solver, how to install them.",
     ),
     (VERIFY, "conform", "cli.conform:command", "Run the conformance checks on a code."),
     (

@@ -69,7 +69,7 @@ def codes(*, pages: Path | None = None) -> int:
         rows.append(
             (known.name, known.title, f"✘ {known.failure.reason}" if known.failure else found, known.shares, omitted)
         )
-    _print(("code", "title", "version", "shares with core", "omits"), rows)
+    _print(("code", "title", "version", "shares with Southwell", "omits"), rows)
     return PASSED
 
 

@@ -7,7 +7,7 @@ from ...cases.judge.results import Run
 from ...cases.store import unfinished
 from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
-from ..verification import terminal
+from ..verification import evidence, terminal
 from .arguments import RESULTS, found, writing
 
 
@@ -68,8 +68,10 @@ def show_tables(run: Run) -> None:
     from ..verification import report as matrix_report
 
     console = output()
+    answer = evidence.verdict(run)
     for line in matrix_report.headline(run):
-        console.print(line, markup=False, soft_wrap=True)
+        style = f"bold {terminal.COLOUR[evidence.VERDICT_OF[evidence.word(run)]]}" if line.startswith(answer) else None
+        console.print(line, style=style, markup=False, soft_wrap=True)
     for table in terminal.matrix(run, console.width):
         console.print(table)
     console.print(terminal.legend(), style="dim", markup=False)

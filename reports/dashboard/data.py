@@ -2,7 +2,7 @@
 
 import hashlib
 import re
-from dataclasses import asdict
+from dataclasses import asdict, replace
 from functools import lru_cache
 from typing import Any
 
@@ -12,7 +12,7 @@ from ...references.protocol.description import Description, describe
 from ..shared import summary
 from ..shared.summary import SYMBOL, WORST_FIRST, broad, columns, plus_minus, size
 from ..shared.units import BY_KEY, Units
-from ..verification import code_pages, controls, evidence, witnesses
+from ..verification import code_pages, controls, evidence, paper_table, witnesses
 from ..verification.figures import core_lines
 from .moving import moving
 
@@ -44,7 +44,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
         "command": run.command,
         "headline": headline(run),
         "evidence": evidence.rows(run),
-        "right": summary.status(run) == 0,
+        "answer": WORST_FIRST.index(evidence.VERDICT_OF[evidence.word(run)]),
         "verdicts": verdicts(),
         "cases": [{"name": c, "title": titles.get(c, ""), "page": page(c), "unit": units(run, c).speed} for c in known],
         "columns": [
@@ -74,6 +74,7 @@ def headline(run: Run) -> list[str]:
     lines = [
         summary.incomplete(run),
         *evidence.first(run),
+        paper_table.line(run),
         witnesses.headline(run),
         *witnesses.missing(run),
         controls.headline(run),
@@ -108,10 +109,12 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
     u = units(run, case)
     cells = [c for c in run.cells if c.case == case]
     setting = next((s for s in run.settings if s.case == case), None)
+    alone = replace(run, cells=tuple(cells), controls=(), settings=(setting,) if setting else ())
     return {
         "name": case,
         "setting": asdict(setting) if setting else None,
-        "answer": evidence.verdict(Run(tuple(cells))),
+        "answer": evidence.verdict(alone),
+        "answered": WORST_FIRST.index(evidence.VERDICT_OF[evidence.word(alone)]),
         "verdict_counts": verdict_counts(run, case),
         "speed": u.speed,
         "frequency": u.frequency,

@@ -221,7 +221,7 @@ class VerifyResult:
         axes.set_xscale("log")
         axes.set_yticks(range(len(codes)), codes)
         axes.invert_yaxis()
-        axes.set_xlabel("|difference from core| + uncertainty, relative")
+        axes.set_xlabel("|difference from Southwell's own solver| + uncertainty, relative")
         return axes
 
     def __repr__(self) -> str:

@@ -20,6 +20,9 @@ SIGNS = re.escape("".join(NAMES))
 VERDICT = re.compile(rf"(?:[\d.e+-]+\n)?([{SIGNS}]) ")
 """Start of a table cell: an optional frequency on its own line, then the sign of the verdict."""
 
+ANSWER = {"Yes": "pass", "No": "fail", "Open": "inconclusive"}
+"""First word of a report's headline → the verdict whose colour it has."""
+
 FOLD = re.compile(r"<details(?: open)?><summary>([^<>]*)</summary>|</details>")
 """The only HTML block in a report; anything else that looks like HTML is text."""
 
@@ -31,7 +34,7 @@ BREAK = "<br>"
 
 @dataclass(frozen=True)
 class Document:
-    """Tokens of a report; headings have an ``id``, table cells that begin with a verdict its ``class``."""
+    """Tokens of a report; headings have an ``id``, table cells that begin with a verdict and the headline its ``class``."""
 
     tokens: list[Token]
     title: str
@@ -46,6 +49,7 @@ def parse(text: str) -> Document:
     tokens = reader.parse(text)
     _anchors(tokens)
     _verdicts(tokens)
+    _answers(tokens)
     titles = (words(inline) for token, inline in pairwise(tokens) if token.type == "heading_open")
     title = next(titles, "Southwell")
     for child in (child for token in tokens for child in token.children or () if child.type == "text"):
@@ -113,3 +117,12 @@ def _verdicts(tokens: Sequence[Token]) -> None:
             found = VERDICT.match(words(inline))
             if found and token.type == "td_open":
                 token.attrSet("class", NAMES[found[1]])
+
+
+def _answers(tokens: Sequence[Token]) -> None:
+    """Give a paragraph that begins with a bold Yes, No or Open the class of the verdict."""
+    for token, inline in pairwise(tokens):
+        bold = any(child.type == "strong_open" for child in (inline.children or [])[:2])
+        answer = words(inline).partition(":")[0] if token.type == "paragraph_open" and bold else ""
+        if answer in ANSWER:
+            token.attrSet("class", ANSWER[answer])

@@ -19,7 +19,7 @@ SAFE = "/:;=,()' \n.-+*<>"
 PALETTE = "\n".join(
     [
         f":root {{ color-scheme: light; --ink: {INK}; --faint: {FAINT}; --head: {HEAD}; --link: #0b57a4; }}",
-        *[f"td.{name} {{ background: {colour}; }}" for name, colour in BACKGROUND.items()],
+        *[f"td.{name}, p.{name} {{ background: {colour}; }}" for name, colour in BACKGROUND.items()],
         f"{', '.join(f'td.{name}' for name in MUTED)} {{ color: {GREY}; }}",
     ]
 )
@@ -27,7 +27,7 @@ PALETTE = "\n".join(
 STYLE = (
     PALETTE
     + """
-td.fail { font-weight: 700; }
+td.fail { font-weight: 700; } p[class] { padding: 0.4rem 0.8rem; border-radius: 4px; font-size: 1.1em; }
 * { box-sizing: border-box; }
 body { font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: var(--ink); background: white;
   max-width: 1500px; margin: 0 auto; padding: 1rem 1.5rem 4rem; }

@@ -53,7 +53,13 @@ def _block(node: SyntaxTreeNode, inline: Inline) -> Iterator[Node]:
         yield {"kind": kind, "level": int(node.tag[1:]), "id": node.attrs["id"], "body": _text(node, inline)}
     elif kind == "paragraph":
         follows = node.next_sibling is not None and node.next_sibling.type == "table"
-        yield {"kind": "span" if node.hidden else kind, "sticky": follows, "body": _text(node, inline)}
+        answer = str(node.attrs.get("class", ""))
+        yield {
+            "kind": "span" if node.hidden else kind,
+            "sticky": follows,
+            "answer": answer,
+            "body": _text(node, inline),
+        }
     elif kind in ("bullet_list", "ordered_list"):
         items = [_blocks(item, inline) for item in node.children]
         yield {"kind": kind, "start": node.attrs.get("start", 1), "items": items}

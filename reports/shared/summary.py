@@ -123,7 +123,7 @@ def cases(run: Run) -> list[str]:
 
 def column(cell: Cell) -> str:
     """The column of a cell."""
-    return "core as in source" if cell.role == "discretisation" else cell.code
+    return "source's discretisation" if cell.role == "discretisation" else cell.code
 
 
 def broad(cell: Cell) -> str:

@@ -115,7 +115,7 @@ def block(run: Run) -> str:
     return f"""{heat(run)}
 
 Each field shows the worst verdict of all modes and speeds, and the largest difference from core with that verdict (for a known
-difference: from core with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
+difference: from Southwell's own solver with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
 
 ## {CASE} at {units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 
@@ -130,8 +130,8 @@ def results_page() -> str:
     return f"""# Results
 
 Results of `make verify`. Each row is a blade, each column a code or a published table; [how to read a
-verdict](reading-a-verdict.md) explains the signs. The column *paper's equations, literally* checks core's fast solver against
-the equations of Park et al. (2010), written out with dense matrices.
+verdict](reading-a-verdict.md) explains the signs. The column *paper's equations, literally* checks Southwell's fast
+solver against the equations of Park et al. (2010), written out with dense matrices.
 
 {block(results.read(ROWS))}"""
 

@@ -20,8 +20,8 @@ def measured(run: Run, case: str, unit: Units) -> str:
             "mode": plain(c.name),
             "speed": unit.at(c.omega),
             f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
-            f"core, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
-            "measured against core": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
+            f"Southwell, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
+            "measured against Southwell": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
             "model error": plain(c.reason),
         }
         for c in sorted(cells, key=lambda c: (c.code, c.mode, c.omega))
@@ -50,7 +50,7 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
     for key in dict.fromkeys(at[c] for c in sorted(cells, key=lambda c: (c.full is None, c.full or 0.0))):
         here = sorted((c for c in cells if at[c] == key), key=lambda c: c.reference != c.full)
         mode, core = here[0].name, here[0].full
-        row = {"mode": plain(mode), f"core, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        row = {"mode": plain(mode), f"Southwell, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
         for name in columns(cells):
             mine = next((c for c in here if column(c) == name), None)
             other = f"<br>{plain(mine.name)}" if mine and mine.name != mode else ""

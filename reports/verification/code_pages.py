@@ -56,7 +56,7 @@ def index(run: Run, known: Sequence[Description]) -> str:
             {
                 "code": f"[{plain(code.title)}]({code.name}.md)",
                 "version": plain(version(run, code)),
-                "shares with core": code.shares,
+                "shares with Southwell": code.shares,
                 "cells": plain(", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n)),
                 "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)} ({plain(far.case)})"
                 if far

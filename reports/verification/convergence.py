@@ -25,7 +25,7 @@ REFINED = ("code", "discretisation")
 
 
 def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Figure | None:
-    """Draw the distance from core's converged answer against refinement, one panel per mode.
+    """Draw the distance from Southwell's converged answer against refinement, one panel per mode.
 
     The speed is the highest at which codes were refined. The number at the end of a line is the order observed at its
     three finest refinements. Returns None if no code was refined.
@@ -56,7 +56,7 @@ def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
         for k, axes in enumerate(grid.flat):
             axes.set_visible(k < len(modes))
             axes.tick_params(labelbottom=k + across >= len(modes))
-        title(figure, f"{case}: distance from core's converged answer, {units.at(omega)}")
+        title(figure, f"{case}: distance from Southwell's converged answer, {units.at(omega)}")
         figure.text(
             0.54,
             (low - 0.42) / height,

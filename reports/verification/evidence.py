@@ -1,19 +1,22 @@
 """The evidence of a run by kind: number of answers, the worst difference of each kind, and where it is."""
 
 from collections.abc import Callable, Iterable
+from typing import Literal
 
 from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
-from ...cases.judge.witnesses import INDEPENDENT, witnesses
+from ...cases.judge.witnesses import INDEPENDENT, groups, short, witnesses
 from ..shared import summary
 from ..shared.summary import SYMBOL
 from ..shared.units import BY_KEY, RAD_S, Units
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
     "measured data (neither confirm nor contradict)": lambda c: c.role == "measured",
-    "codes and closed forms that share nothing with core": lambda c: c.role != "table" and c.shares == "nothing",
+    "codes and closed forms that share nothing with Southwell's own solver": lambda c: (
+        c.role != "table" and c.shares == "nothing"
+    ),
     "printed tables": lambda c: c.role == "table",
-    "codes on core's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",
+    "codes on Southwell's own model or discretisation": lambda c: bool(c.shares) and c.shares != "nothing",
     "the source's own discretisation": lambda c: c.role == "discretisation",
     "mechanisms: codes and closed forms with the same equations": lambda c: c.role == "same discretisation",
     "other": lambda c: True,
@@ -26,28 +29,55 @@ The third and fourth kinds check the answer, the fifth only the implementation.
 URGENT: dict[Verdict, str] = {"fail": "Worst failure", "inconclusive": "Largest inconclusive difference"}
 """Verdicts reported first, worst first."""
 
+OWN = "Southwell's own solver"
+"""What reports call core."""
+
+Answer = Literal["Yes", "No", "Open"]
+
+VERDICT_OF: dict[Answer, Verdict] = {"Yes": "pass", "No": "fail", "Open": "inconclusive"}
+"""The verdict whose colour an answer has."""
+
 SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass", "coarse")
 """Verdicts on a difference from core with the same effects, worst first."""
 
 
 def verdict(run: Run) -> str:
-    """The verdict on the run in one sentence."""
+    """The answer to the question of the report in one sentence, which begins with Yes, No or Open.
+
+    No: an answer contradicts Southwell's own solver. Open: nothing does, but something is missing that a Yes requires.
+    """
     counts = summary.counts(run.cells)
-    if not summary.compared(run.cells):
-        return "Nothing was compared."
     missing = sum(_mute(c) for c in run.cells)
+    lacking = f"{missing} answer{' is' if missing == 1 else 's are'} missing" if missing else ""
     if wrong := counts["fail"] - missing:
-        also = f", and {missing} {'is' if missing == 1 else 'are'} missing" if missing else ""
-        return (
-            f"No: {wrong} answer contradicts core{also}."
-            if wrong == 1
-            else f"No: {wrong} answers contradict core{also}."
-        )
-    if missing:
-        return f"No: {missing} answer is missing." if missing == 1 else f"No: {missing} answers are missing."
-    if counts["inconclusive"]:
-        return f"Nothing contradicts core; inconclusive answers: {counts['inconclusive']}."
-    return "Nothing contradicts core."
+        contradict = "answer contradicts" if wrong == 1 else "answers contradict"
+        return f"No: {wrong} {contradict} {OWN}{f', and {lacking}' if lacking else ''}."
+    unsure = counts["inconclusive"]
+    missed = sum(control.missed for control in run.controls)
+    alone = _unconfirmed(run)
+    reasons = (
+        "the run was stopped before its end" if run.unfinished else "",
+        "" if summary.compared(run.cells) else "nothing was compared",
+        lacking,
+        f"{unsure} answer{' is' if unsure == 1 else 's are'} inconclusive" if unsure else "",
+        f"{missed} seeded fault{' is' if missed == 1 else 's are'} not detected" if missed else "",
+        f"too few independent groups confirm {', '.join(alone)}" if alone else "",
+    )
+    if any(reasons):
+        return f"Open: {'; '.join(reason for reason in reasons if reason)}."
+    return f"Yes: nothing contradicts {OWN}."
+
+
+def word(run: Run) -> Answer:
+    """The first word of the verdict."""
+    return next(answer for answer in VERDICT_OF if verdict(run).startswith(f"{answer}:"))
+
+
+def _unconfirmed(run: Run) -> list[str]:
+    """Blades with fewer independent groups than required, or with none although codes declare their origin."""
+    origins = {o.case for o in run.origins}
+    bare = [case for case in summary.cases(run) if case in origins and not groups(witnesses(run, case))]
+    return list(dict.fromkeys([*(s.case for s in short(run)), *bare]))
 
 
 def answer(run: Run) -> str:
@@ -109,8 +139,8 @@ def _measured(cells: Iterable[Cell]) -> Cell | None:
 def rows(run: Run) -> list[dict[str, str]]:
     """One row per kind of evidence.
 
-    A row has the cells by verdict, the worst difference from core with the same effects, and the largest known
-    difference.
+    A row has the cells by verdict and the worst difference from core with the same effects. Known differences, such as those
+    of effects that a code declares to omit, are in the sections of the cases.
     """
     out = []
     kinds: dict[str, list[Cell]] = {kind: [] for kind in KINDS}
@@ -119,13 +149,11 @@ def rows(run: Run) -> list[dict[str, str]]:
             kinds[next(kind for kind, takes in KINDS.items() if takes(cell))].append(cell)
     for kind, cells in kinds.items():
         if cells:
-            same, known = farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
             out.append(
                 {
                     "evidence": kind,
                     "answers": ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n),
-                    "worst, relative to target": _shown(run, same or _measured(cells)),
-                    "largest known difference": _shown(run, known),
+                    "worst, relative to target": _shown(run, farthest(cells) or _measured(cells)),
                 }
             )
     return out

@@ -110,7 +110,7 @@ def _markers(
     axes: Axes, style: Mapping[str, Look], cells: Sequence[Cell], shown: Sequence[str], units: Units
 ) -> list[Line2D]:
     """Draw hollow nested markers, the first code's the largest, so that codes that agree remain visible."""
-    handles = [Line2D([], [], color=INK, lw=1.0, label="core, converged")]
+    handles = [Line2D([], [], color=INK, lw=1.0, label="Southwell, converged")]
     for rank, name in enumerate(shown):
         mine = [c for c in cells if column(c) == name and c.frequency is not None]
         handles += axes.plot(
@@ -192,7 +192,7 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
         axes.set_yticks(range(len(names)), [fill(name, LONGEST) for name in names])
         axes.tick_params(axis="y", length=0, pad=8)
         decades(axes.xaxis, 20)
-        axes.set_xlabel("|difference| from core with the same effects, relative, ± uncertainty")
+        axes.set_xlabel("|difference| from Southwell with the same effects, relative, ± uncertainty")
         axes.annotate("largest", (1.02, -0.5), (0, 4), ("axes fraction", "data"), "offset points", size=8, color=MUTED)
         title(figure, f"{case}: differences, every mode and speed")
         present = counts(cells)

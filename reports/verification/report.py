@@ -17,16 +17,10 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import case_tables, controls, error_budget, evidence, witnesses
+from . import case_tables, controls, error_budget, evidence, paper_table, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
-
-LARGEST: dict[Verdict, str] = {
-    "known difference": "Largest known difference",
-    "pass": "Largest difference among passes",
-}
-"""Further verdicts that the headline names, worst first."""
 
 SHORT: dict[Verdict, str] = {"known difference": "known", "not applicable": "n/a"}
 """Short names of verdicts in the heat table; its legend explains them."""
@@ -95,7 +89,9 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
     return environment.get_template("report.md.jinja").render(
         headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
         evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
-        remarks=[plain(line) for line in (witnesses.headline(run), controls.headline(run)) if line],
+        remarks=[
+            plain(line) for line in (paper_table.line(run), witnesses.headline(run), controls.headline(run)) if line
+        ],
         heat=heat(run, linked=True),
         unasked=unasked(run),
         legend=LEGEND,
@@ -119,10 +115,9 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the worst first, without markup."""
     lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run), evidence.measured(run)]
-    for verdict, what in LARGEST.items():
-        if worst := summary.largest(c for c in run.cells if c.verdict == verdict):
-            lines.append(f"{what}: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
-    lines += [witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    if worst := summary.largest(c for c in run.cells if c.verdict == "pass"):
+        lines.append(f"Largest difference among passes: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
+    lines += [paper_table.line(run), witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
     return [line for line in lines if line]
 
 
@@ -174,7 +169,7 @@ def heat(run: Run, linked: bool = False) -> str:
         rows.append({"case": name} | {plain(n): _heat(here.get(n, [])) for n in shown})
     if any(c.shares for c in run.cells):
         shares = {plain(n): plain(witnesses.shared(mine)) for n, mine in shown.items()}
-        rows.append({"case": "*shares with core*"} | shares)
+        rows.append({"case": "*shares with Southwell*"} | shares)
     return table(rows)
 
 

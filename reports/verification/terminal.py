@@ -40,7 +40,7 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
     The columns are split into several tables if they exceed ``width`` characters.
     """
     cases = [case.replace("/", "/\n ") for case in summary.cases(run)]
-    first = max((len(line) for case in (*cases, "shares with core") for line in case.split("\n")), default=0)
+    first = max((len(line) for case in (*cases, "shares with Southwell") for line in case.split("\n")), default=0)
     heads = {name: re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name) for name in columns(run.cells, broad)}
     shares = {name: witnesses.shared([c for c in run.cells if broad(c) == name]) for name in heads}
     widths = {
@@ -58,14 +58,14 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
         if any(c.shares for c in run.cells):
             out.add_section()
             shown = [escape(shares[name]).replace(" ", "\n") for name in part]
-            out.add_row("shares with core", *shown, style="dim")
+            out.add_row("shares with Southwell", *shown, style="dim")
         yield out
 
 
 def legend() -> str:
     """The legend of ``matrix``."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
-    return f"largest difference from core in % (2e-14: relative; 1.4 of 2: target of 2 %); {signs}"
+    return f"largest difference from Southwell's own solver in % (2e-14: relative; 1.4 of 2: target of 2 %); {signs}"
 
 
 def controls(run: Run) -> Table:

@@ -8,7 +8,7 @@ function casePage() {
   const s = DATA.setting;
   MAIN.append(make("h1", {}, DATA.name));
   if (s) MAIN.append(make("p", {}, s.title));
-  MAIN.append(make("div", { id: "headline", class: `v${Math.min(...DATA.verdict_counts.map((t) => t.verdict))}` }, make("p", {}, make("strong", {}, DATA.answer)), ...DATA.verdict_counts.map((t) =>
+  MAIN.append(make("div", { id: "headline", class: `v${DATA.answered}` }, make("p", {}, make("strong", {}, DATA.answer)), ...DATA.verdict_counts.map((t) =>
     make("p", {}, `${t.count} ${sign(t.verdict)}`, t.text ? `, at worst ${t.text} (${t.where})` : t.where ? ` (${t.where})` : ""))));
   if (s) MAIN.append(make("p", { class: "muted" }, s.description),
     make("p", { class: "muted" }, Object.entries(s.facts).map(([k, v]) => `${k}: ${v}`).join(" · ")), make("p", { class: "muted" }, `Source: ${s.source}`));
@@ -45,7 +45,7 @@ function differences() {
         make("ul", {}, ...[...reasons].map(([why, names]) => make("li", {}, make("strong", {}, names.join(", ")), ` ${why}`)))) : "");
   };
   MAIN.append(make("h2", {}, "Difference ± uncertainty"), make("div", { class: "filters" }, chooser("speed", speeds.map((v) => [v, inWords(v)]), draw, "speed", speeds.at(-1))), place, detail,
-    make("p", { class: "muted" }, `Beside each mode: core with all effects, ${DATA.frequency}. A known difference is from that; every other from core with the code's own effects.`));
+    make("p", { class: "muted" }, `Beside each mode: Southwell's own solver with all effects, ${DATA.frequency}. A known difference is from that; every other from that solver with the code's own effects.`));
   draw(speeds.at(-1));
 }
 

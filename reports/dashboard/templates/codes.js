@@ -5,13 +5,13 @@ const placed = (far) => make("td", { class: far ? `prose v${far[0]}` : null }, .
 
 function codes() {
   MAIN.append(make("h1", {}, "Codes"), make("p", { class: "muted" }, "Codes that share core's mechanical model or discretisation are one witness of the implementation, not several of the answer."),
-    table(["code", "what", "version", "shares with core", "answers", "worst, relative to target", "largest known difference"], DATA.codes.map((code) => row(link(code.page, code.name),
+    table(["code", "what", "version", "shares with Southwell", "answers", "worst, relative to target", "largest known difference"], DATA.codes.map((code) => row(link(code.page, code.name),
       make("td", { class: "prose" }, code.title), code.version, code.shares, make("td", { class: "prose" }, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join(", ")), placed(code.worst), placed(code.known))), { id: "codes" }),
     make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));
 }
 
 function code() {
-  MAIN.append(make("h1", {}, DATA.title), make("p", {}, make("code", {}, DATA.name), ` · version ${DATA.version || "unknown"} · shares with core: ${DATA.shares || "not said in these results"}`,
+  MAIN.append(make("h1", {}, DATA.title), make("p", {}, make("code", {}, DATA.name), ` · version ${DATA.version || "unknown"} · shares with Southwell: ${DATA.shares || "not said in these results"}`,
     DATA.lacks === undefined ? "" : ` · leaves out: ${DATA.lacks || "nothing"}`));
   if (DATA.hint && DATA.version === "not installed") MAIN.append(make("p", { class: "muted" }, `To install: ${DATA.hint}`));
   MAIN.append(make("h2", {}, "Largest difference for each blade"),

@@ -55,14 +55,14 @@ function matrix() {
     }
     const cases = DATA.cases.map((_, k) => k).filter((k) => shown.some((c) => c[CASE] === k));
     const columns = DATA.columns.map((_, j) => j).filter((j) => shown.some((c) => c[COLUMN] === j));
-    const shares = make("tr", { class: "shares" }, make("th", { scope: "row" }, "shares with core"), ...columns.map((j) => make("td", {}, DATA.columns[j].shares.replace("discretisation", "discreti\u00adsation"))));
+    const shares = make("tr", { class: "shares" }, make("th", { scope: "row" }, "shares with Southwell"), ...columns.map((j) => make("td", {}, DATA.columns[j].shares.replace("discretisation", "discreti\u00adsation"))));
     place.replaceChildren(cases.length ? grid("case", cases.map((k) => make("a", { href: DATA.cases[k].page, title: DATA.cases[k].title }, ...broken(DATA.cases[k].name))),
       columns.map((j) => make(DATA.columns[j].page ? "a" : "span", { href: DATA.columns[j].page }, ...broken(DATA.columns[j].name))),
       cases.map((k) => columns.map((j) => field(k, j, groups.get(`${k} ${j}`) || []))), detail, shares) : make("p", {}, "No cell is of this kind."));
   }
 
-  MAIN.append(make("h1", {}, "Are these natural frequencies right?"), make("div", { id: "headline", class: DATA.right ? "v3" : "v0" }, ...DATA.headline.map((line) => make("p", {}, line))),
-    make("p", { class: "muted" }, "In each field: the worst verdict of all modes and speeds shown, and the largest difference from core behind it. ",
+  MAIN.append(make("h1", {}, "Are these natural frequencies right?"), make("div", { id: "headline", class: `v${DATA.answer}` }, ...DATA.headline.map((line) => make("p", {}, line))),
+    make("p", { class: "muted" }, "In each field: the worst verdict of all modes and speeds shown, and the largest difference from Southwell's own solver behind it. ",
       "Point at a field, or go from one to the next with the arrow keys, for details; Enter opens the case."),
     filters, make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))), place, detail);
   draw();

@@ -265,7 +265,9 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
     assert status == 1
     assert "::error title=beam::some-code" in out
     shown = (tmp_path / "summary.md").read_text()
-    assert shown.startswith("before\n### Southwell\n\n**No: 1 answer contradicts core.** 3 cells: 1 ✘ fail")
+    assert shown.startswith(
+        "before\n### Southwell\n\n**No: 1 answer contradicts Southwell's own solver.** 3 cells: 1 ✘ fail"
+    )
     assert "**✘ gate failed" in shown
     assert len(ElementTree.parse(tmp_path / "j.xml").findall(".//testcase")) == 8
 

@@ -122,7 +122,7 @@ def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
     assert {c.verdict for c in cells} == {"estimate"}
     assert not summary.compared(cells)
     assert status("bracket") == 1
-    assert evidence.answer(Run(tuple(cells))).startswith("Nothing was compared.")
+    assert evidence.answer(Run(tuple(cells))).startswith("Open: nothing was compared.")
 
 
 def test_a_wide_target_is_coarse_and_no_evidence() -> None:
@@ -237,7 +237,7 @@ def test_nothing_compared_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixt
     asked = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
     status, out, _ = southwell(asked, capsys)
     assert status == 1
-    assert "Nothing was compared." in out
+    assert "Open: nothing was compared" in out
 
 
 def test_a_wider_target_of_a_table_is_bounded_and_shown() -> None:

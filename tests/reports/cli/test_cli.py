@@ -221,7 +221,10 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
         (code, omega, mode) for code in ("exact-beam", "yoo-shin") for omega in (0.0, 10.0) for mode in (1, 2)
     }
     assert all(c.verdict == "pass" for c in run.cells)
-    assert shown.splitlines()[0] == f"Nothing contradicts core. {len(run.cells)} cells: {len(run.cells)} ✔ pass."
+    assert (
+        shown.splitlines()[0]
+        == f"Yes: nothing contradicts Southwell's own solver. {len(run.cells)} cells: {len(run.cells)} ✔ pass."
+    )
     assert f"southwell verify {beam} --codes exact-beam,yoo-shin" in (out / "report.md").read_text()
 
     written = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}

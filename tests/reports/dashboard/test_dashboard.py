@@ -69,13 +69,13 @@ def test_a_small_failure_is_named_before_large_known_differences(tmp_path: Path)
     cells[k] = replace(cells[k], verdict="fail", difference=1.2e-3, uncertainty=1e-6)
     write({"a run": replace(run(), cells=tuple(cells))}, None, tmp_path)
     answer, worst, *_ = data(tmp_path / "index.html")["headline"]
-    assert answer.startswith("No: 1 answer contradicts core.")
+    assert answer.startswith("No: 1 answer contradicts Southwell's own solver.")
     assert worst.startswith("Worst failure: +0.120 % ± 0.0001 % (park-cantilever, pybmodes, ")
     mine = next(c for c in data(tmp_path / "codes.html")["codes"] if c["name"] == "pybmodes")
     assert mine["worst"] == [0, "+0.120 % ± 0.0001 %", "park-cantilever"]
     assert mine["known"][0] == 2
     case = data(tmp_path / page("park-cantilever"))
-    assert case["answer"] == "No: 1 answer contradicts core."
+    assert case["answer"] == "No: 1 answer contradicts Southwell's own solver."
     assert (case["verdict_counts"][0]["verdict"], case["verdict_counts"][0]["count"]) == (0, 1)
 
 

@@ -129,7 +129,7 @@ def test_every_filter_by_keyboard(tab: Any, site: Path, name: str) -> None:
 def test_the_verdict_is_said_first(tab: Any, site: Path) -> None:
     tab.goto((site / "run-2" / "index.html").as_uri())
     first, worst, *_ = tab.locator("#headline p").all_inner_texts()
-    assert first.startswith(f"Nothing contradicts core. {len(run().cells)} cells: ")
+    assert first.startswith(f"Yes: nothing contradicts Southwell's own solver. {len(run().cells)} cells: ")
     said = re.fullmatch(
         r"Worst independent answer.*: ✔ (\S+ % ± \S+ %): (\S+), (\S+), (\w+ \d), (.+); target (\S+ %)\.", worst
     )
@@ -318,7 +318,7 @@ def test_codes_and_negative_controls(tab: Any, site: Path) -> None:
     tab.wait_for_url(re.compile(r"/code-pybmodes\.html$"))
     text = tab.locator("main").inner_text()
     assert "version 1.19.1" in text
-    assert "shares with core: nothing" in text
+    assert "shares with Southwell: nothing" in text
     assert "leaves out: prestretch" in text
     cases = {c.case for c in run().cells if c.code == "pybmodes"}
     assert tab.locator("#worst tbody tr").count() == len(cases)

@@ -108,7 +108,7 @@ def test_a_verdict_has_one_colour_in_the_report_and_in_the_dashboard() -> None:
     known = {"pass": "pass", "known-difference": "known", "inconclusive": "open", "fail": "fail"}
     for name, colour in known.items():
         here, there = (
-            re.search(rf"td\.{name} {{ background: (#\w+)", html.STYLE),
+            re.search(rf"td\.{name}, p\.{name} {{ background: (#\w+)", html.STYLE),
             re.search(rf"--{colour}:(#\w+)", style),
         )
         assert here

@@ -37,9 +37,9 @@ WITH = replace(PLAIN, cells=(*PLAIN.cells, SEEN, UNSEEN))
 
 def test_they_change_no_status_and_no_answer() -> None:
     assert summary.status(WITH) == summary.status(PLAIN) == 0
-    assert evidence.verdict(WITH) == "Nothing contradicts core."
+    assert evidence.verdict(WITH) == "Yes: nothing contradicts Southwell's own solver."
     alone = Run((SEEN, UNSEEN))
-    assert evidence.verdict(alone) == "Nothing was compared."
+    assert evidence.verdict(alone) == "Open: nothing was compared."
     assert summary.status(alone) == 1
 
 
@@ -54,7 +54,7 @@ def test_they_are_counted_by_themselves_and_explained() -> None:
     text = report.render(WITH, {})
     assert "### Measured data" in text
     assert text.count(r"u\_D 2.00 %") == text.count(r"u\_D 20.00 %") == 1
-    assert "contradicts core" not in text.replace("Nothing contradicts core", "")
+    assert "contradicts Southwell's own solver" not in text.replace("nothing contradicts Southwell's own solver", "")
     assert "◇" in terminal.legend()
 
 
