@@ -177,20 +177,23 @@ def follows(s: Array, r: Array) -> bool:
 def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array) -> str:
     """Message for a spline whose length between stations k and k + 1 is not the difference of their arc lengths."""
     s = blade.stations
-    step, found = s[k + 1] - s[k], f"curve: between {s[k]:g} m and {s[k + 1]:g} m"
+    step, interval = s[k + 1] - s[k], f"curve: between {s[k]:g} m and {s[k + 1]:g} m"
     along = np.diff(blade.curve, axis=0) / chord[:, None]
-    turn = np.arccos(np.clip((along[1:] * along[:-1]).sum(1), -1.0, 1.0))  # at the inner stations
-    turn[np.isin(s[1:-1], blade.kinks)] = 0.0
-    adjacent, around = (turn[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
+    bend = np.arccos(np.clip((along[1:] * along[:-1]).sum(1), -1.0, 1.0))  # at the inner stations
+    bend[np.isin(s[1:-1], blade.kinks)] = 0.0
+    adjacent, around = (bend[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
     longest = chord[k] / np.sinc(adjacent.max(initial=0.0) / (2 * np.pi))  # circular arc with that turn
     if around.max(initial=0.0) > np.radians(1.0) and chord[k] - allowed[k] < step < longest + allowed[k]:
         corner = s[max(k - SWING_REACH, 0) + 1 + int(around.argmax())]
         return (
-            f"{found} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it oscillates because "
+            f"{interval} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it oscillates because "
             f"the curve turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points there, or declare a kink: "
             f"kinks = [{corner:g}]"
         )
-    return f"{found} it is {arc[k]:.6g} m long, but the stations differ by {step:.6g} m: check the arc lengths and the points"
+    return (
+        f"{interval} it is {arc[k]:.6g} m long, but the stations differ by {step:.6g} m: check the arc lengths "
+        "and the points"
+    )
 
 
 def _stiffness(blade: "Blade") -> None:
@@ -272,9 +275,9 @@ def body_fault(matrix: Array, unit: str) -> str | None:
             "order of the rows"
         )
     moment = matrix[:3, 3:]
-    even = np.abs(moment + moment.T)
-    if even.max() > MASS_TOLERANCE * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
-        i, j = np.unravel_index(int(even.argmax()), (3, 3))
+    symmetric_part = np.abs(moment + moment.T)
+    if symmetric_part.max() > MASS_TOLERANCE * np.abs(moment).max() + 1e-6 * np.sqrt(m * max(np.trace(J), 0.0)):
+        i, j = np.unravel_index(int(symmetric_part.argmax()), (3, 3))
         return (
             f"entries ({i}, {j + 3}) and ({j}, {i + 3}) are {moment[i, j]:g} and {moment[j, i]:g}: they must be opposite "
             "(mass times offset of the centre), 0 on the diagonal; check signs and the order of the rows"

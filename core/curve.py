@@ -29,12 +29,12 @@ def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool =
     s = on_kinks(s, kinks, SAME * stations[-1])
     piece = np.searchsorted(np.array(kinks), s, side="left" if before else "right")
     ends = np.array([stations[0], *kinks, stations[-1]])
-    found, rate = (np.empty((len(s), *values.shape[1:]), dtype=values.dtype) for _ in range(2))
+    out, rate = (np.empty((len(s), *values.shape[1:]), dtype=values.dtype) for _ in range(2))
     for k in np.unique(piece):
         points, here = (stations >= ends[k]) & (stations <= ends[k + 1]), piece == k
         spline = CubicSpline(stations[points], values[points])
-        found[here], rate[here] = spline(s[here]), spline(s[here], 1)
-    return found, rate
+        out[here], rate[here] = spline(s[here]), spline(s[here], 1)
+    return out, rate
 
 
 def on_kinks(s: Array, kinks: Kinks, within: float) -> Array:

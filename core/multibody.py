@@ -13,8 +13,8 @@ A rigid blade of 40 kg on a lag hinge 0.3 m off the rotor's axis, with a damper 
         motions=(mb.Motion("shaft.rz", rate=30.0),),
         coordinate_springs=(mb.CoordinateSpring("lag.rz", damping=600.0),),
     )
-    found = mb.solve(blade)
-    found.frequencies, found.damping  # 10.14 rad/s, 0.141 of critical
+    solution = mb.solve(blade)
+    solution.frequencies, solution.damping  # 10.14 rad/s, 0.141 of critical
 
 Lengths in m, angles in rad, SI throughout. A joint's axis is the z axis of its frame (see ``at``); its coordinates are named
 ``joint.rz`` and so on (see ``mechanism.joints.SCREWS``). Joints that close loops are found automatically, or marked with
@@ -77,7 +77,7 @@ class Solution:
         independent: names of the independent coordinates; the others follow from them.
         redundant: redundant constraint equations, as ``joint: component``.
         linear: M̂, Ĉ, K̂ over the independent coordinates, with the steady state and the partition.
-        found: the modes over the independent coordinates, as returned by the eigenvalue solver.
+        eigenpairs: the modes over the independent coordinates, as returned by the eigenvalue solver.
     """
 
     values: Complex
@@ -87,7 +87,7 @@ class Solution:
     independent: tuple[str, ...]
     redundant: tuple[str, ...]
     linear: Linearization
-    found: Eigen | Damped
+    eigenpairs: Eigen | Damped
 
     @cached_property
     def uncertainty(self) -> Array:
@@ -95,7 +95,7 @@ class Solution:
 
         Computed at the first access, which takes as long as the modes.
         """
-        return rounding(self.linear, self.found)
+        return rounding(self.linear, self.eigenpairs)
 
     @property
     def strain(self) -> float:
@@ -152,11 +152,13 @@ def solve(
             f"beams: steady strain {strain:.0%}: too large for linear elastic sections: loads or speeds are too high or a beam "
             "too soft; check units, or allow large strains"
         )
-    found = modes(linear, count)
-    values: Complex = np.asarray(found.values if isinstance(found, Damped) else 1j * found.frequencies, np.complex128)
+    eigenpairs = modes(linear, count)
+    values: Complex = np.asarray(
+        eigenpairs.values if isinstance(eigenpairs, Damped) else 1j * eigenpairs.frequencies, np.complex128
+    )
     tree, part = linear.tree, linear.partition
     shapes: Complex = np.zeros((len(values), len(tree.coordinates)), np.complex128)
-    shapes[:, part.free] = (part.R @ found.vectors).T
+    shapes[:, part.free] = (part.R @ eigenpairs.vectors).T
     if len(values):
         shapes /= shapes[np.arange(len(values)), np.abs(shapes).argmax(1)][:, None]
     return Solution(
@@ -167,7 +169,7 @@ def solve(
         independent=linear.names,
         redundant=part.redundant,
         linear=linear,
-        found=found,
+        eigenpairs=eigenpairs,
     )
 
 

@@ -62,12 +62,12 @@ def motions(t: Tree, J: Array, which: list[int]) -> Array:
 
 def transformation(t: Tree, J: Array) -> Array:
     """B (..., 6 b, n) from J (..., 6, n), and Ḃ from J̇: a body has the screws of all coordinates that carry it."""
-    return (t.carries[:, None, :] * J[..., None, :, :]).reshape(*J.shape[:-2], -1, J.shape[-1])
+    return (t.moves_body[:, None, :] * J[..., None, :, :]).reshape(*J.shape[:-2], -1, J.shape[-1])
 
 
 def screw_rates(t: Tree, J: Array, v: Array) -> Array:
     """J̇ = Y × J (..., 6, n): a screw turns with the body, or the part of a joint, that carries it."""
-    Y = t.before @ cs.transposed(J * v[..., None, :])
+    Y = t.moves_screw @ cs.transposed(J * v[..., None, :])
     return np.ascontiguousarray(cs.transposed(cs.times(cs.ad(Y), cs.transposed(J))))
 
 
@@ -195,8 +195,8 @@ def equations(t: Tree, q: Array, v_I: Array, part: Partition) -> Equations:
 
 def inertia_forces(e: Equations, dv_I: Array) -> Array:
     """M̂ v̇_I (..., i)."""
-    of_bodies = by_bodies(e.blocks, cs.times(e.B, cs.times(e.R, dv_I)))
-    return cs.times(cs.transposed(e.R), cs.times(cs.transposed(e.B), of_bodies))
+    forces = by_bodies(e.blocks, cs.times(e.B, cs.times(e.R, dv_I)))
+    return cs.times(cs.transposed(e.R), cs.times(cs.transposed(e.B), forces))
 
 
 def accelerations(t: Tree, e: Equations) -> tuple[Array, Array]:

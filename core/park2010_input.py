@@ -54,8 +54,8 @@ class Tree:
         cuts: a body and its copy, for each cut joint.
         screw: (n, 6) unit twist of each coordinate, in its joint's frame.
         inertia: (b, 6, 6) in the bodies' frames.
-        carries: (b, n) 1: the coordinate moves the body; else 0.
-        before: (n, n) 1: the coordinate of the column moves the screw of the row; else 0.
+        moves_body: (b, n) 1: the coordinate moves the body; else 0.
+        moves_screw: (n, n) 1: the coordinate of the column moves the screw of the row; else 0.
         elements: the elements by strain measure.
     """
 
@@ -66,8 +66,8 @@ class Tree:
     cuts: list[tuple[int, int]]
     screw: Array
     inertia: Array
-    carries: Array
-    before: Array
+    moves_body: Array
+    moves_screw: Array
     elements: list[Elements]
 
     def motions(self) -> tuple[list[int], Array]:
@@ -116,12 +116,15 @@ def tree(mechanism: Mechanism) -> Tree:
         )
     for k, joint in enumerate(cuts):
         hang(joint, True, b + k)
-    carries, before = np.zeros((b + len(cuts) + 1, len(screw))), np.zeros((len(screw), len(screw)))  # the ground last
+    moves_body, moves_screw = (
+        np.zeros((b + len(cuts) + 1, len(screw))),
+        np.zeros((len(screw), len(screw))),
+    )  # the ground last
     for near, far, own, _, _ in branches:
-        carries[far] = carries[near]
+        moves_body[far] = moves_body[near]
         for k in own:
-            before[k] = carries[far]
-            carries[far, k] = 1.0
+            moves_screw[k] = moves_body[far]
+            moves_body[far, k] = 1.0
     return Tree(
         mechanism=mechanism,
         bodies=bodies,
@@ -130,8 +133,8 @@ def tree(mechanism: Mechanism) -> Tree:
         cuts=[(bodies[joint.child], b + k) for k, joint in enumerate(cuts)],
         screw=np.array(screw).reshape(-1, 6),
         inertia=np.array([*(body.inertia for body in mechanism.bodies), *np.zeros((len(cuts), 6, 6))]),
-        carries=carries[:-1],
-        before=before,
+        moves_body=moves_body[:-1],
+        moves_screw=moves_screw,
         elements=[x for m in get_args(Measure) if (x := _elements(mechanism, bodies, m))],
     )
 

@@ -58,10 +58,10 @@ def rates(t: Tree, q: Array) -> tuple[Array, Array]:
         _, J = poses(t, q)
         following = np.setdiff1d(np.arange(len(q)), moved)
         Phi_q = cut_joints(t) @ transformation(t, J).real
-        back = np.linalg.pinv(Phi_q[:, following], rcond=_RANK)
-        v[following] = -back @ Phi_q @ v
+        pinv = np.linalg.pinv(Phi_q[:, following], rcond=_RANK)
+        v[following] = -pinv @ Phi_q @ v
         gamma = cut_joints(t) @ (transformation(t, screw_rates(t, J, v)) @ v).real
-        dv[following] = -back @ (Phi_q @ dv + gamma)
+        dv[following] = -pinv @ (Phi_q @ dv + gamma)
     return v, dv
 
 
@@ -120,8 +120,8 @@ def steady(t: Tree, guess: Mapping[str, float] | Array | None = None) -> Array:
             tangent = scipy.linalg.lu_factor(along_q(t, part, q))
         v, dv = rates(t, q)
         e = equations(t, q, v[part.I], part)
-        left = e.Q_hat - inertia_forces(e, dv[part.I])
-        step = e.R.real @ scipy.linalg.lu_solve(tangent, -np.real(left))
+        unbalanced = e.Q_hat - inertia_forces(e, dv[part.I])
+        step = e.R.real @ scipy.linalg.lu_solve(tangent, -np.real(unbalanced))
         size = np.abs(step / unit(t, e)).max(initial=0.0)
         q = q + step * min(1.0, _MAX_STEP / size) if size else q
         if size < _CONVERGED or _ROUNDED > size > 0.5 * last:
@@ -170,8 +170,8 @@ def modes(linear: Linear) -> tuple[Array, Array]:
         numpy.linalg.LinAlgError: K̂ is singular.
     """
     n = len(linear.K)
-    back = -np.linalg.solve(linear.K, np.hstack([linear.C, linear.M]))
-    mu, vectors = np.linalg.eig(np.vstack([back, np.eye(n, 2 * n)]))
+    upper_rows = -np.linalg.solve(linear.K, np.hstack([linear.C, linear.M]))
+    mu, vectors = np.linalg.eig(np.vstack([upper_rows, np.eye(n, 2 * n)]))
     keep = np.flatnonzero((np.imag(mu) <= 0.0) & (np.abs(mu) > _RIGID * np.abs(mu).max(initial=0.0)))
     keep = keep[np.argsort(-np.abs(mu[keep]))]
     return 1.0 / mu[keep], vectors[:n, keep]

@@ -93,7 +93,7 @@ def numbered(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def spoken(energy_fractions: Array) -> str:
+def describe_fractions(energy_fractions: Array) -> str:
     """Energy fractions (4,) of one mode in words, largest first: ``54 % flapwise, 43 % edgewise``."""
     order = np.argsort(-energy_fractions, kind="stable")
     return ", ".join(
@@ -139,10 +139,10 @@ def _smooth_motion(
     """``_motion`` on one smooth piece, from shapes (m, n, 4) and section axes (n, 3, 3) at its stations ``at`` (n,)."""
     tangent, (offset, _) = section[:, :, 0], _about_centre(mass_at(blade, at), section)
     displacement = shapes[:, :, :3]
-    bent = np.cross(
+    bending_rotation = np.cross(
         tangent, CubicSpline(at, displacement, axis=1)(at, 1)
     )  # part of the sections' rotation about x that is not torsion
-    torsion = (shapes[:, :, 3] - bent[:, :, 0]) / tangent[:, 0]
+    torsion = (shapes[:, :, 3] - bending_rotation[:, :, 0]) / tangent[:, 0]
     line = CubicSpline(at, displacement + torsion[:, :, None] * np.cross(tangent, offset), axis=1)
     along = frames(blade, s)[:, :3, 0]
     bending = np.cross(along, line(s, 1))

@@ -36,12 +36,12 @@ def read_bytes(path: Path, largest: int = LARGEST_TEXT) -> bytes:
         number = os.open(path, os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0))
     except ValueError as error:  # a zero byte, or a surrogate that the system's encoding lacks
         raise FileRefusedError(path, f"impossible name: {error}") from error
-    found = os.fstat(number)
-    if not stat.S_ISREG(found.st_mode):
+    status = os.fstat(number)
+    if not stat.S_ISREG(status.st_mode):
         os.close(number)
-        raise FileRefusedError(path, f"{_kind(found.st_mode)}, not a file")
+        raise FileRefusedError(path, f"{_kind(status.st_mode)}, not a file")
     with os.fdopen(number, "rb") as file:
-        if found.st_size <= largest:  # 0 for some files, such as those in /proc
+        if status.st_size <= largest:  # 0 for some files, such as those in /proc
             content = file.read(largest + 1)
             if len(content) <= largest:
                 return content

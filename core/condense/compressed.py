@@ -115,8 +115,8 @@ def segment_modes(
     levels = [chain_modes(mesh_from_segments(s, root), omega, m).frequencies for s in (joined(half), half)]
     if min(len(f) for f in levels) < m:
         return unknown
-    sure = accuracy.estimate(np.array([*levels, fine.frequencies]), order=2).of_finest
-    return replace(fine, uncertainty=sure + fine.rounding)
+    uncertainty = accuracy.estimate(np.array([*levels, fine.frequencies]), order=2).of_finest
+    return replace(fine, uncertainty=uncertainty + fine.rounding)
 
 
 def _centred(inertia: Array) -> tuple[Array, Array]:

@@ -38,13 +38,13 @@ class Exported:
 
 
 def model(
-    stiffness: Exported, place: Mapping[int, ArrayLike], mass: Exported | None = None, name: str = ""
+    stiffness: Exported, coordinates: Mapping[int, ArrayLike], mass: Exported | None = None, name: str = ""
 ) -> FiniteElements:
     """A finite element model from exported matrices and the places of their nodes.
 
     Args:
         stiffness: with named freedoms.
-        place: node label → (3,) coordinates, m.
+        coordinates: node label → (3,) coordinates, m.
         mass: in the same freedoms, in any order; its row sums over each direction are the lumped mass.
         name: label in messages; by default that of the file.
 
@@ -55,9 +55,9 @@ def model(
         raise MatrixFileError(
             f"{stiffness.name}: does not name its freedoms: set nodes and directions, in the order of the file's rows"
         )
-    lost = [n for n in stiffness.nodes.tolist() if n not in place]
-    if lost:
-        raise MatrixFileError(f"{stiffness.name}: node {lost[0]} has no coordinates: give those of all its nodes")
+    missing = [n for n in stiffness.nodes.tolist() if n not in coordinates]
+    if missing:
+        raise MatrixFileError(f"{stiffness.name}: node {missing[0]} has no coordinates: give those of all its nodes")
     lumped = np.zeros(len(stiffness.nodes))
     if mass is not None:
         at = {key: k for k, key in enumerate(zip(mass.nodes.tolist(), mass.directions.tolist(), strict=True))}
@@ -69,7 +69,7 @@ def model(
         along = mass.directions[:, None] == np.arange(6)
         sums = (mass.matrix @ along.astype(float))[np.arange(len(at)), mass.directions]
         lumped = sums[[at[key] for key in keys]]
-    points = np.array([place[n] for n in stiffness.nodes.tolist()], float)
+    points = np.array([coordinates[n] for n in stiffness.nodes.tolist()], float)
     return FiniteElements(name or stiffness.name, points, stiffness.directions, stiffness.matrix, lumped)
 
 

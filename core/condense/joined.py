@@ -21,12 +21,12 @@ def joined(segments: Sequence[Segment]) -> list[Segment]:
 
 def _pair(a: Segment, b: Segment) -> Segment:
     """One segment from two; all in the axes of a's first frame."""
-    out, back = sp.adjoint(a.undeformed), sp.adjoint(sp.inverse(a.undeformed))
+    out, to_first_frame = sp.adjoint(a.undeformed), sp.adjoint(sp.inverse(a.undeformed))
     first = np.linalg.inv(a.stiffness)  # ρ of a, from a wrench at the far end
     second = out @ np.linalg.inv(b.stiffness) @ out.T
-    far = back.T @ b.inertia @ back
-    inertia = a.inertia + far
-    twist_b = first + out @ b.ride @ back @ second  # of b's body
-    mean = np.linalg.solve(inertia, a.inertia @ a.ride @ first + far @ twist_b)
+    second_inertia = to_first_frame.T @ b.inertia @ to_first_frame
+    inertia = a.inertia + second_inertia
+    twist_b = first + out @ b.ride @ to_first_frame @ second  # of b's body
+    mean = np.linalg.solve(inertia, a.inertia @ a.ride @ first + second_inertia @ twist_b)
     stiffness = np.linalg.inv(first + second)
     return Segment(a.undeformed @ b.undeformed, 0.5 * (stiffness + stiffness.T), inertia, mean @ stiffness)

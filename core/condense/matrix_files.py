@@ -141,12 +141,12 @@ def _triplets(name: str, lines: list[str]) -> Exported:
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], values)
     ones = np.ones(len(at), np.intp)
-    found = assembled(name, np.column_stack([at[:, 0], ones]), np.column_stack([at[:, 1], ones]), values)
-    if (found.nodes != 1 + np.arange(len(found.nodes))).any():
+    by_number = assembled(name, np.column_stack([at[:, 0], ones]), np.column_stack([at[:, 1], ones]), values)
+    if (by_number.nodes != 1 + np.arange(len(by_number.nodes))).any():
         raise MatrixFileError(
-            f"{name}: rows {found.nodes.tolist()[:3]}…: not all from 1 to the last: rows without entries?"
+            f"{name}: rows {by_number.nodes.tolist()[:3]}…: not all from 1 to the last: rows without entries?"
         )
-    return Exported(name, found.matrix)
+    return Exported(name, by_number.matrix)
 
 
 def _dmig(name: str, lines: list[str], what: str) -> Exported:
@@ -188,9 +188,9 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
     return assembled(name, at[:, :2], at[:, 2:], np.array(values[key]), mirror=form == SYMMETRIC)
 
 
-def _chosen(name: str, kind: str, there: list[str], what: str) -> str:
-    if not there:
+def _chosen(name: str, kind: str, available: list[str], what: str) -> str:
+    if not available:
         raise MatrixFileError(f"{name}: no {kind} found: is the file truncated?")
-    if what not in there and len(there) > 1:
-        raise MatrixFileError(f"{name}: {kind} {what} not found; there are {', '.join(there)}")
-    return what if what in there else there[0]
+    if what not in available and len(available) > 1:
+        raise MatrixFileError(f"{name}: {kind} {what} not found; there are {', '.join(available)}")
+    return what if what in available else available[0]

@@ -43,9 +43,9 @@ def real(name: str, number: int, word: str) -> float:
     Raises:
         MatrixFileError: naming the line.
     """
-    if not (found := _FORM.fullmatch(word)):
+    if not (form := _FORM.fullmatch(word)):
         raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a number: columns shifted?")
-    mantissa, exponent = found[1], (found[2] or "").lstrip("EeDd")
+    mantissa, exponent = form[1], (form[2] or "").lstrip("EeDd")
     value = float(f"{'-' if word.startswith('-') else ''}{mantissa}E{exponent or 0}")
     if abs(value) > LARGEST_ENTRY:
         raise MatrixFileError(f"{name}, line {number}: {word[:40]}: implausibly large: check the exponent")
@@ -63,7 +63,7 @@ def reals(name: str, numbers: Sequence[int], words: Sequence[str]) -> NDArray[np
 
 
 def _many(
-    one: Callable[[str, int, str], float],
+    parse: Callable[[str, int, str], float],
     kind: type,
     characters: str,
     most: float,
@@ -71,10 +71,10 @@ def _many(
     numbers: Sequence[int],
     words: Sequence[str],
 ) -> NDArray[Any]:
-    """All words at once if they have only these ``characters``, else each by ``one``, which names the line of a wrong one."""
+    """All words at once if they have only these ``characters``, else each by ``parse``, which names the line of a wrong one."""
     if set("".join(words)) <= set(characters):
         with suppress(ValueError, OverflowError):
             values = np.array(words, dtype=kind)
             if (np.abs(values) <= most).all():
                 return values
-    return np.array([one(name, k, word) for k, word in zip(numbers, words, strict=True)], dtype=kind)
+    return np.array([parse(name, k, word) for k, word in zip(numbers, words, strict=True)], dtype=kind)

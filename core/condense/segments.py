@@ -82,17 +82,18 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
             f"{where}: not positive semi-definite (lowest eigenvalue {lowest:.2e} of a unit diagonal): "
             "wrong sign, order of freedoms, or a stiffness under load?"
         )
-    carried = (
+    motions = (
         np.concatenate([np.eye(6), sp.adjoint(sp.inverse(undeformed))]) * np.sqrt(diagonal)[:, None]
     )  # by a twist of a
-    left = np.abs(unit @ carried).max(0) / (np.abs(unit) @ np.abs(carried)).max(0)
-    if left.max() > SYMMETRY_TOLERANCE:
+    unbalanced = np.abs(unit @ motions).max(0) / (np.abs(unit) @ np.abs(motions)).max(0)
+    if unbalanced.max() > SYMMETRY_TOLERANCE:
         raise CondensationError(
-            f"{where}: {MOTIONS[int(left.argmax())]} as a rigid body causes forces ({left.max():.1e} of their terms): fewer "
-            "than six rigid-body modes; a support left in the model, or frames not at the nodes of the matrix (units?)"
+            f"{where}: {MOTIONS[int(unbalanced.argmax())]} as a rigid body causes forces ({unbalanced.max():.1e} of their "
+            "terms): fewer than six rigid-body modes; a support left in the model, or frames not at "
+            "the nodes of the matrix (units?)"
         )
-    back = sp.adjoint(sp.inverse(undeformed))
-    k = back.T @ (0.5 * (k + k.T))[6:, 6:] @ back
+    to_a = sp.adjoint(sp.inverse(undeformed))
+    k = to_a.T @ (0.5 * (k + k.T))[6:, 6:] @ to_a
     size = np.sqrt(np.diagonal(k))
     lowest = np.linalg.eigvalsh(k / np.outer(size, size))[0]
     if lowest < MIN_EIGENVALUE:

@@ -200,18 +200,18 @@ def relative_pencil(
     """
     if axes is None and beams.points.force.any():
         raise ValueError("axes: not given, but the points carry loads: give the rotations from the rotating frame to a")
-    turn = np.zeros((len(x), 3, 3)) if axes is None else axes
-    x, beta, frame, gravity, turn = (np.ascontiguousarray(a) for a in (x, beta, frame, gravity, turn))
-    return RelativePencil(*kernels.relative_pencil(beams.arrays, x, beta, frame, gravity, turn, effects.geometric))
+    rotations = np.zeros((len(x), 3, 3)) if axes is None else axes
+    x, beta, frame, gravity, rotations = (np.ascontiguousarray(a) for a in (x, beta, frame, gravity, rotations))
+    return RelativePencil(*kernels.relative_pencil(beams.arrays, x, beta, frame, gravity, rotations, effects.geometric))
 
 
-def pencil(found: RelativePencil) -> Pencil:
-    """The residual and matrices on (ξ_a, ξ_b, β); the arrays of ``found`` are changed."""
-    found.residual[:, :6] -= found.residual[:, 6:12]  # ρ = ξ_b − ξ_a
-    for matrix in found[1:4]:
+def pencil(relative: RelativePencil) -> Pencil:
+    """The residual and matrices on (ξ_a, ξ_b, β); the arrays of ``relative`` are changed."""
+    relative.residual[:, :6] -= relative.residual[:, 6:12]  # ρ = ξ_b − ξ_a
+    for matrix in relative[1:4]:
         matrix[:, :6] -= matrix[:, 6:12]
         matrix[:, :, :6] -= matrix[:, :, 6:12]
-    return Pencil(*found)
+    return Pencil(*relative)
 
 
 def on_ends(on_a: Array, on_b: Array) -> Array:

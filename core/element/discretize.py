@@ -141,10 +141,10 @@ def _half_end_force(blade: Blade, nodes: Array, load: Array) -> Array:
 def _half_end(blade: Blade, nodes: Array) -> Array:
     """(n+1, 6, 6): each node carries the halves of its neighbouring elements, moved to it along the span."""
     node, s, weight = _halves(blade, nodes)
-    turn = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
-    turn[:, :3, 3] = 0.0
+    rotations = sp.inverse(sections.frames(blade, nodes))[node] @ sections.frames(blade, s)
+    rotations[:, :3, 3] = 0.0
     lumps = np.zeros((len(nodes), 6, 6))
-    np.add.at(lumps, node, weight[:, None, None] * transformed(mass_at(blade, s), turn))
+    np.add.at(lumps, node, weight[:, None, None] * transformed(mass_at(blade, s), rotations))
     return lumps
 
 

@@ -47,15 +47,15 @@ def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
 
     At a kink, ``before`` gives the section on its root side, otherwise the one on its tip side.
     """
-    turn = sp.rotation(0, twist_at(blade, s))
+    twist_rotation = sp.rotation(0, twist_at(blade, s))
     if straight(blade):
-        local = sp.pose(turn, np.outer(s, [1.0, 0.0, 0.0]))
+        local = sp.pose(twist_rotation, np.outer(s, [1.0, 0.0, 0.0]))
     else:
-        place, t = curve.at(blade.stations, blade.curve, blade.kinks, s, before=before)
+        position, t = curve.at(blade.stations, blade.curve, blade.kinks, s, before=before)
         t /= np.linalg.norm(t, axis=1, keepdims=True)
         w = sp.skew(np.cross([1.0, 0.0, 0.0], t))
         swing = np.eye(3) + w + w @ w / (1.0 + t[:, 0])[:, None, None]
-        local = sp.pose(swing @ turn, place)
+        local = sp.pose(swing @ twist_rotation, position)
     return root(blade) @ local
 
 
@@ -163,19 +163,21 @@ def _between(blade: Blade) -> Array:
     growth = np.linalg.eigvalsh(np.linalg.solve(root, np.swapaxes(np.linalg.solve(root, k[1:]), 1, 2))) - 1.0
     change = np.exp(np.abs(np.log1p(growth)).max(1, initial=0.0))
     fixed = (np.diff(s) <= _STEP * blade.length) | (len(s) > _MANY)
-    found = []
+    inserted = []
     for i in np.flatnonzero(change > np.where(fixed, _PIECE, _LARGE)):
         for t in _pieces(float(growth[i].max()), float(growth[i].min())):
-            found.append(s[i] + t * (s[i + 1] - s[i]))
-    return np.array(found)
+            inserted.append(s[i] + t * (s[i + 1] - s[i]))
+    return np.array(inserted)
 
 
 def _pieces(fastest: float, slowest: float) -> Iterator[float]:
     """Where to divide 0 < t < 1, so that no ``1 + t g`` with g between these values changes by more than ``_PIECE``."""
-    before = 1.0 / fastest if fastest > 0.0 else np.inf  # distances of the nearest poles from the interval's start
-    beyond = -1.0 / slowest if slowest < 0.0 else np.inf
+    nearest_pole = (
+        1.0 / fastest if fastest > 0.0 else np.inf
+    )  # distances of the nearest poles from the interval's start
+    next_pole = -1.0 / slowest if slowest < 0.0 else np.inf
     t = 0.0
-    while (t := t + min((_PIECE - 1.0) * (before + t), (1.0 - 1.0 / _PIECE) * (beyond - t))) < 1.0:
+    while (t := t + min((_PIECE - 1.0) * (nearest_pole + t), (1.0 - 1.0 / _PIECE) * (next_pole - t))) < 1.0:
         yield t
 
 
@@ -191,14 +193,14 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     interval = np.clip(np.searchsorted(points.start, at, side="right") - 1, 0, None)
     until = partial_weights(GAUSS, (at - points.start[interval]) / h[interval])
     n = len(nodes) - 1
-    placed, inside, wanted = np.split(frames(blade, np.concatenate([nodes, s.ravel(), at])), [n + 1, n + 1 + s.size])
+    placed, inside, at_points = np.split(frames(blade, np.concatenate([nodes, s.ravel(), at])), [n + 1, n + 1 + s.size])
     ends = frames(blade, nodes[1:], before=True) if blade.kinks else placed[1:]
     to_first = sp.inverse(placed[:-1])
     pose = to_first[element][:, None] @ inside.reshape(*s.shape, 4, 4)
     undeformed = to_first @ ends
     lever = sp.adjoint(pose)
     soft = compliance(blade, s.ravel()).reshape(*s.shape, 6, 6)
-    turn = lever @ soft @ np.swapaxes(lever, -1, -2)
+    compliances = lever @ soft @ np.swapaxes(lever, -1, -2)
     start = np.searchsorted(element, np.arange(n))
 
     def over(weights: Array, values: Array) -> Array:
@@ -215,21 +217,21 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
         parts = over(b[None], values)[:, 0]
         begun = np.cumsum(parts, axis=0) - parts
         begun -= begun[start][element]
-        there = begun[interval] + np.einsum("m,mq,mqkl->mkl", h[interval], until, values[interval])
-        return begun[:, None] + over(a, values), there, np.add.reduceat(parts, start, axis=0)
+        up_to_at = begun[interval] + np.einsum("m,mq,mqkl->mkl", h[interval], until, values[interval])
+        return begun[:, None] + over(a, values), up_to_at, np.add.reduceat(parts, start, axis=0)
 
-    within, there, flexibility = running(turn)
+    within, up_to_at, flexibility = running(compliances)
     stiffness = np.linalg.inv(flexibility)
     q, at_element = np.repeat(element, GAUSS), element[interval]
-    shape, at_shape = within.reshape(-1, 6, 6) @ stiffness[q], there @ stiffness[at_element]
+    shape, at_shape = within.reshape(-1, 6, 6) @ stiffness[q], up_to_at @ stiffness[at_element]
     size = np.repeat(np.array([1.0, float(np.mean(np.diff(nodes)))]), 3)
     to_section = sp.adjoint(sp.inverse(pose))
     load = np.swapaxes(to_section, -1, -2) * size  # unit loads of the sections, as wrenches at a
     nearer, _, total = running(load)
     carried = total[element][:, None] - nearer  # beyond each point
-    loose, there, tip = running(turn @ carried)
-    bubble = loose.reshape(-1, 6, 6) - shape @ tip[q]
-    at_bubble = there - at_shape @ tip[at_element]
+    compliant, up_to_at, tip = running(compliances @ carried)
+    bubble = compliant.reshape(-1, 6, 6) - shape @ tip[q]
+    at_bubble = up_to_at - at_shape @ tip[at_element]
     work = whole(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
     unit = _unit_stiffness(work)
     local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
@@ -237,10 +239,10 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     last = sp.log(undeformed)
     of_ends = sp.tangent(last)  # the twist of b from δ
     strain = local @ (stiffness @ of_ends)[element][:, None]
-    turned = shape.reshape(turn.shape)[..., 3:, :] @ of_ends[element][:, None]
+    rotation = shape.reshape(compliances.shape)[..., 3:, :] @ of_ends[element][:, None]
     length = np.diff(nodes)[element][:, None, None]
     part = (s - nodes[element][:, None])[..., None] / length
-    bow = _bow(to_section, part, length, last[element][:, None], strain, turned)
+    bow = _bow(to_section, part, length, last[element][:, None], strain, rotation)
     uneven = 12.0 * (part[..., None] - 0.5) * np.concatenate([strain, loaded], axis=-1)
     return StaticSolution(
         element=q,
@@ -251,7 +253,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
         shape=shape,
         bubble=bubble @ unit[q],
         at_element=at_element,
-        at_pose=to_first[at_element] @ wanted,
+        at_pose=to_first[at_element] @ at_points,
         at_shape=at_shape,
         at_bubble=at_bubble @ unit[at_element],
         nodes=placed,

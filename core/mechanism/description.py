@@ -148,10 +148,10 @@ def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
     Raises:
         MechanismError: if that coordinate has no motion, or follows a law.
     """
-    mine = [m for m in mechanism.motions if m.coordinate == coordinate and m.law is None]
-    if not mine:
+    same_coordinate = [m for m in mechanism.motions if m.coordinate == coordinate and m.law is None]
+    if not same_coordinate:
         raise MechanismError(f"coordinate {coordinate!r}: no motion at a rate is given: add one")
-    motions = tuple(replace(m, rate=rate) if m in mine else m for m in mechanism.motions)
+    motions = tuple(replace(m, rate=rate) if m in same_coordinate else m for m in mechanism.motions)
     return replace(mechanism, motions=motions)
 
 
@@ -168,14 +168,14 @@ def check(m: Mechanism) -> None:
             raise MechanismError(f"{what} {twice[0]!r}: given twice; names must be unique")
     if GROUND in names:
         raise MechanismError("body 'ground': the name of the inertial frame; choose another")
-    known = {GROUND, *names}
+    declared = {GROUND, *names}
     used = [(f"joint {j.name!r}", n) for j in m.joints for n in (j.parent, j.child)]
     used += [("spring", n) for s in m.springs for n in (s.body_a, s.body_b)]
     used += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b, b.axes_of)]
     used += [("load", n) for f in m.loads for n in (f.body, f.axes_of)]
     for what, name in used:
-        if name not in known:
-            raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(known))}")
+        if name not in declared:
+            raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(declared))}")
     moving = [x.coordinate for x in m.motions]
     if len(set(moving)) < len(moving):
         raise MechanismError(f"motion {max(moving, key=moving.count)!r}: given twice; give one per coordinate")

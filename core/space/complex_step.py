@@ -48,8 +48,8 @@ def skew(a: Array) -> Array:
 def inverse(x: Array) -> Array:
     """Inverse poses (..., 4, 4)."""
     out = np.zeros(x.shape, x.dtype)
-    out[..., :3, :3] = turn = transposed(x[..., :3, :3])
-    out[..., :3, 3] = -times(turn, x[..., :3, 3])
+    out[..., :3, :3] = rotation = transposed(x[..., :3, :3])
+    out[..., :3, 3] = -times(rotation, x[..., :3, 3])
     out[..., 3, 3] = 1.0
     return out
 

@@ -50,21 +50,21 @@ def estimate(f: Array, order: int) -> Estimate:
 
     These uncertainties cover 99.9 % of the errors; see docs/uncertainty.md.
     """
-    before, last = f[1] - f[0], f[2] - f[1]
-    quiet = np.abs(before) <= 1e3 * FLOOR * f[2]  # rounding, which has no order
+    first_step, second_step = f[1] - f[0], f[2] - f[1]
+    quiet = np.abs(first_step) <= 1e3 * FLOOR * f[2]  # rounding, which has no order
     with np.errstate(divide="ignore", invalid="ignore"):
-        observed = np.log2(before / last)
+        observed = np.log2(first_step / second_step)
     converging = np.isfinite(observed) & (observed > _SLOWEST) & ~quiet
     firm = converging & (np.abs(observed - order) <= _NEAR_THEORY * order)
     slow = np.clip(np.where(converging, observed, _SLOWEST), _SLOWEST, order)
     gain = 2.0**order - 1.0
-    first, second = f[1] + before / gain, f[2] + last / gain
-    spread = _WARY * np.maximum(np.abs(before), np.abs(last))
-    expected = np.maximum(np.abs(last), np.abs(before) / 2.0**order)
+    first, second = f[1] + first_step / gain, f[2] + second_step / gain
+    spread = _WARY * np.maximum(np.abs(first_step), np.abs(second_step))
+    expected = np.maximum(np.abs(second_step), np.abs(first_step) / 2.0**order)
     wary = np.where(converging, _WARY * expected / (2.0**slow - 1.0), spread)
     values = np.where(firm, second, f[2])
-    of_values = np.where(firm, np.maximum(np.abs(second - first), np.abs(last) / gain), wary) / f[2]
-    of_finest = np.where(firm, _FIRM * np.abs(last) / gain + np.abs(second - first), wary) / f[2]
+    of_values = np.where(firm, np.maximum(np.abs(second - first), np.abs(second_step) / gain), wary) / f[2]
+    of_finest = np.where(firm, _FIRM * np.abs(second_step) / gain + np.abs(second - first), wary) / f[2]
     return Estimate(values, *(np.maximum(u, _CHANCE * np.maximum.accumulate(u)) for u in (of_values, of_finest)))
 
 

@@ -24,7 +24,7 @@ class MissedModesError(ArithmeticError):
     """The eigensolver missed a mode or found one twice."""
 
 
-def check(p: TreePencil, frequencies: Array, beyond: Array, rounding: float = 0.0) -> None:
+def check(p: TreePencil, frequencies: Array, next_frequencies: Array, rounding: float = 0.0) -> None:
     """Prove that the frequencies are the lowest ones with their multiplicities.
 
     The count is taken in the gap above the last frequency. If that frequency belongs to a cluster of which only some modes
@@ -33,7 +33,7 @@ def check(p: TreePencil, frequencies: Array, beyond: Array, rounding: float = 0.
     Args:
         p: the pencil.
         frequencies: (m,) ascending.
-        beyond: (k,) estimates of the next frequencies, from above, which locate the gap.
+        next_frequencies: (k,) estimates of the next frequencies, from above, which locate the gap.
         rounding: relative error of the pencil due to rounding; frequencies closer than ten times that (at most 3 %) are not
             distinguished.
 
@@ -41,19 +41,19 @@ def check(p: TreePencil, frequencies: Array, beyond: Array, rounding: float = 0.
         MissedModesError: the count differs.
     """
     last = frequencies[-1]
-    next_ = beyond.min(initial=2.0 * last)  # not above the last if that is one of an exact pair
+    next_ = next_frequencies.min(initial=2.0 * last)  # not above the last if that is one of an exact pair
     near = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
     room = min(next_ / last - 1.0, 0.1)
     wide = room > _MIN_GAP
-    shift, found = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)
+    shift, expected = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)
     counted = below(p, shift)
-    if counted > found or (counted == found and not wide):
+    if counted > expected or (counted == expected and not wide):
         shift = last * (1.0 - near)
-        found = int((frequencies < shift).sum())
+        expected = int((frequencies < shift).sum())
         counted = below(p, shift)
-    if counted != found:
+    if counted != expected:
         raise MissedModesError(
-            f"the eigensolver found {found} natural frequencies below {shift:.9g} rad/s, but there are {counted}: change "
+            f"the eigensolver found {expected} natural frequencies below {shift:.9g} rad/s, but there are {counted}: change "
             "the number of modes or elements; please report this as a bug"
         )
 

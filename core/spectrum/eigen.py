@@ -59,9 +59,9 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     n, r = f.shape
     h = np.zeros((n + r, n + r), complex)  # i A⁻¹S in the basis (k⁻ᵀ x, Fᵀ y) with M = F Fᵀ
     h[:n, :n], h[:n, n:], h[n:, :n] = 1j * g, 1j * f, -1j * f.T
-    wanted = r if count is None else min(count, r)
+    requested = r if count is None else min(count, r)
     try:
-        mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - wanted, n + r - 1])
+        mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - requested, n + r - 1])
     except np.linalg.LinAlgError as error:
         raise _failed(error) from error
     order = np.argsort(-mu)
@@ -150,16 +150,18 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
         given = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
     massive, massless = _by_mass(M)
     r, s = massive.shape[1], massless.shape[1]  # x = massive p + massless q, and y = λ p; M x λ² = λ M massive y
-    none, one = np.zeros((d, n + r)), np.eye(r)
+    zeros, identity = np.zeros((d, n + r)), np.eye(r)
     # d equations along W replace d of the n; the others are unchanged, so that stiff and soft ones are not mixed
     a = np.block(
         [
-            [np.zeros((r, n)), one],
+            [np.zeros((r, n)), identity],
             [-w @ C @ massive, -w @ C @ massless, -w @ M @ massive],
             [-K[given] @ massive, -K[given] @ massless, -C[given] @ massive],
         ]
     )
-    b = np.block([[one, np.zeros((r, s + r))], [none], [np.zeros((n - d, r)), C[given] @ massless, M[given] @ massive]])
+    b = np.block(
+        [[identity, np.zeros((r, s + r))], [zeros], [np.zeros((n - d, r)), C[given] @ massless, M[given] @ massive]]
+    )
     try:
         pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))
     except np.linalg.LinAlgError as error:

@@ -86,18 +86,18 @@ def _lowest(p: TreePencil, count: int, near: Start | None, width: int) -> Lowest
     """``lanczos`` with this number of vectors in a block."""
     a = _operator(p)
     w = _start_vectors(p, a, near, width)
-    found = _converged(a, w, count, near.size if near else None)
-    z = found.vectors.T
-    x = np.stack([z.real, -z.imag], axis=1).reshape(2 * len(z), -1) @ found.basis[:, : w.shape[1] // 2]
+    ritz = _converged(a, w, count, near.size if near else None)
+    z = ritz.vectors.T
+    x = np.stack([z.real, -z.imag], axis=1).reshape(2 * len(z), -1) @ ritz.basis[:, : w.shape[1] // 2]
     x = x.reshape(len(z), 2, -1)  # conjugate: i A⁻¹S has 1/ω at λ = −iω
     frequencies, kappa = _quotients(p, x)
-    if not (np.abs(frequencies * found.values - 1.0) < 1e-2).all():
+    if not (np.abs(frequencies * ritz.values - 1.0) < 1e-2).all():
         raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
     order = np.argsort(frequencies)
-    completeness.check(p, frequencies[order], 1.0 / found.next_values)
+    completeness.check(p, frequencies[order], 1.0 / ritz.next_values)
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
-    combined = (_phases(len(w), len(z)) @ z).real @ found.basis
-    start = Start(combined, len(found.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
+    combined = (_phases(len(w), len(z)) @ z).real @ ritz.basis
+    start = Start(combined, len(ritz.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
     return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
 
 
@@ -168,9 +168,9 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
         w = w[: len(gram)]
         if not size:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
-        wanted, more = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
+        requested, available = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(1j * projected[:size, :size], "U")  # of i times the skew matrix with this upper triangle
-        mu, beyond, z = mu[size - wanted :], mu[size - more : size - wanted], z[:, size - wanted :]
+        mu, next_values, z = mu[size - requested :], mu[size - available : size - requested], z[:, size - requested :]
         last = z[before:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
@@ -191,7 +191,7 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
         raise EigensolverError(
             f"{count} modes did not converge in a basis of {size} vectors: request another number of modes"
         )
-    return _Ritz(basis[:size], mu[positive], z[:, positive], beyond[beyond > smallest])
+    return _Ritz(basis[:size], mu[positive], z[:, positive], next_values[next_values > smallest])
 
 
 def _massive(p: TreePencil) -> tuple[Array, Array]:
@@ -237,10 +237,10 @@ def solve_error(p: TreePencil, v: Array) -> float:
     force = product(p.M, 1.0, p.links, v[:1, :n])
     x = force.copy()
     solve(p.factor, x)
-    left = force - product(p.K, 1.0, p.links, x)
-    more = left.copy()
-    solve(p.factor, more)
-    return float(np.sqrt(abs((left * more).sum() / (force * x).sum())))
+    residual = force - product(p.K, 1.0, p.links, x)
+    correction = residual.copy()
+    solve(p.factor, correction)
+    return float(np.sqrt(abs((residual * correction).sum() / (force * x).sum())))
 
 
 def _width(p: TreePencil) -> int:

@@ -31,12 +31,14 @@ _SAFETY = 3.0
 _TOGETHER = 1e-6  # relative distance of eigenvalues that rounding may mix
 
 
-def rounding(linear: Linearization, found: eigen.Eigen | eigen.Damped) -> Array:
+def rounding(linear: Linearization, eigenpairs: eigen.Eigen | eigen.Damped) -> Array:
     """(m,) error of the eigenvalues due to rounding: relative for frequencies, absolute for damping ratios.
 
     Infinite if it cannot be estimated; 0 for rigid modes, which are exact.
     """
-    values: Complex = np.asarray(found.values if isinstance(found, eigen.Damped) else 1j * found.frequencies, complex)
+    values: Complex = np.asarray(
+        eigenpairs.values if isinstance(eigenpairs, eigen.Damped) else 1j * eigenpairs.frequencies, complex
+    )
     if not len(values):
         return np.zeros(0)
     sizes = _sizes(linear)
@@ -56,12 +58,12 @@ def rounding(linear: Linearization, found: eigen.Eigen | eigen.Damped) -> Array:
         cluster = np.abs(values - value) <= _TOGETHER * abs(value)
         x, y = _vectors(Q, int(cluster.sum()))
         sharp = float(np.linalg.svd(y.conj().T @ slope @ x, compute_uv=False).min()) * abs(value)
-        mine = found.vectors[:, k] / unit
-        left = float(np.linalg.norm(y.conj().T @ (Q @ mine)) / np.linalg.norm(mine))
+        computed = eigenpairs.vectors[:, k] / unit
+        residual = float(np.linalg.norm(y.conj().T @ (Q @ computed)) / np.linalg.norm(computed))
         powers = (abs(value) ** 2, abs(value), 1.0)
         spread = sum(p * (4.0 * _EPS * size + change) for p, size, change in zip(powers, sizes, changes, strict=True))
         moved = float(np.linalg.norm(np.abs(y).T @ (unit[:, None] * spread * unit) @ np.abs(x)))
-        simple = (left + moved) / sharp if sharp > 0 else np.inf
+        simple = (residual + moved) / sharp if sharp > 0 else np.inf
         if simple > _TOGETHER and cluster.sum() > 1:
             simple = float(np.abs(values[cluster] - values[cluster].mean()).max()) / abs(value)
         out[k] = FLOOR + _SAFETY * simple

@@ -142,8 +142,10 @@ class Iterate:
 
         The size of a step is not a criterion: the steps of an almost inextensible blade are tiny.
         """
-        before = previous.energy if previous else np.nan
-        return self.length <= _DIVERGED and _converged(self.energy, before, rounding_energy(self.pencil, self.shape))
+        previous_energy = previous.energy if previous else np.nan
+        return self.length <= _DIVERGED and _converged(
+            self.energy, previous_energy, rounding_energy(self.pencil, self.shape)
+        )
 
     def following(self) -> Self | None:
         """The shape after the step, or a part of it if it is long; None if it is too long.
@@ -159,15 +161,15 @@ class Iterate:
         return displaced(self.mesh, self.shape, fraction * self.node_step, fraction * self.step)
 
 
-def _converged(energy: float, before: float, rounding: float) -> bool:
-    """Whether a step with this energy is the last one; ``before``: that of the last step, nan for the first one.
+def _converged(energy: float, previous_energy: float, rounding: float) -> bool:
+    """Whether a step with this energy is the last one; ``previous_energy``: that of the last step, nan for the first one.
 
     It is if its energy is that of rounding errors, of which ``rounding`` is a bound, and it is the first step or hardly smaller
     than the last one, or if the next one would be negligible by quadratic convergence: rounding may be far below its bound.
     """
-    if np.isnan(before):
+    if np.isnan(previous_energy):
         return energy <= rounding
-    ratio = energy / before
+    ratio = energy / previous_energy
     if ratio > _MIN_REDUCTION:
         return energy <= _STALL_FACTOR * rounding
     following = energy * ratio * ratio  # of the next step: it is proportional to the square of this one's
@@ -212,13 +214,13 @@ def coordinates(mesh: Mesh, shape: Shape) -> Array:
     return out
 
 
-def extrapolate(mesh: Mesh, known: Mapping[float, Array], omega: float) -> Shape | None:
+def extrapolate(mesh: Mesh, earlier: Mapping[float, Array], omega: float) -> Shape | None:
     """Extrapolate the shape to ``omega`` (rad/s) from the ``coordinates`` at known values of Ω²; None if there are none.
 
     The polynomial in Ω² is fitted by least squares, which amplifies rounding errors less than one through all points. With
     poses in the hub's axes, of which strains are small differences, these errors would be far larger.
     """
-    return _shape(mesh, extrapolated(known, omega**2)) if known else None
+    return _shape(mesh, extrapolated(earlier, omega**2)) if earlier else None
 
 
 def _shape(mesh: Mesh, values: Array) -> Shape:

@@ -46,7 +46,7 @@ def mechanism(mesh: Mesh, omega: float, gravity: tuple[float, float, float] = (0
         motions=tuple(motions),
         coordinate_springs=tuple(springs),
         beams=tuple(
-            Beam(f"body {a}", f"body {k + 1}", one(mesh.beams, k), at_b=mesh.corner[k], axes_of="hub")
+            Beam(f"body {a}", f"body {k + 1}", single_element(mesh.beams, k), at_b=mesh.corner[k], axes_of="hub")
             for k, a in enumerate(mesh.parent)
             if k not in frames
         ),
@@ -55,16 +55,16 @@ def mechanism(mesh: Mesh, omega: float, gravity: tuple[float, float, float] = (0
     )
 
 
-def one(beams: Beams, k: int) -> Beams:
+def single_element(beams: Beams, k: int) -> Beams:
     """The k-th element as a batch of one."""
-    mine = beams.points.element == k
+    inside = beams.points.element == k
     p = beams.points
-    none = np.zeros(int(mine.sum()), dtype=np.intp)
+    none = np.zeros(int(inside.sum()), dtype=np.intp)
     at = slice(k, k + 1)
     return Beams(
         law=part(beams.law, at),
         stiffness=beams.stiffness[at],
-        points=Points(none, p.zeta0[mine], p.shape[mine], p.bubble[mine], p.mass[mine], p.force[mine]),
+        points=Points(none, p.zeta0[inside], p.shape[inside], p.bubble[inside], p.mass[inside], p.force[inside]),
         preload=beams.preload[at],
         inner_preload=beams.inner_preload[at],
     )

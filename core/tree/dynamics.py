@@ -146,15 +146,15 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     """g = M (A − a_g) + Y ×* M Y; following the body, δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇ − M a_g × ξ."""
     M = inertias(tree, k)
     fall = np.concatenate([tree.mechanism.gravity, np.zeros(3)])
-    turn = sp.ad(k.Y)
+    ad_Y = sp.ad(k.Y)
     momentum = (M @ k.Y[..., None])[..., 0]
-    out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(turn, -1, -2) @ momentum[..., None])[..., 0]
+    out.g[: len(M)] += (M @ (k.A - fall)[..., None] - np.swapaxes(ad_Y, -1, -2) @ momentum[..., None])[..., 0]
     lever = np.abs(sp.adjoint(sp.inverse(k.poses)))
     parts_of_M = np.swapaxes(lever, -1, -2) @ np.abs(tree.inertia) @ lever  # M and M Y may cancel
     parts = parts_of_M @ (np.abs(k.A) + np.abs(fall))[..., None]
-    parts += np.abs(np.swapaxes(turn, -1, -2)) @ parts_of_M @ np.abs(k.Y)[..., None]
+    parts += np.abs(np.swapaxes(ad_Y, -1, -2)) @ parts_of_M @ np.abs(k.Y)[..., None]
     out.size[: len(M)] += parts[..., 0]
-    mt = M @ turn
+    mt = M @ ad_Y
     C = -np.swapaxes(mt, -1, -2) - mt - sp.coadjoint(momentum)
     each = np.arange(len(M))
     out.blocks.append((each, each, (M, C, -M @ sp.ad(fall))))
@@ -240,16 +240,16 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
         C = C.copy()
         C[:, :12, :12] += bm.on_ends(d, d)
     # from ξ seen in the rotating frame to rates in the ground: ξ̇_r = ξ̇ − V × ξ
-    turn, local = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
-    turn[:, :6, :6] = turn[:, 6:12, 6:12] = sp.ad(frame)
+    ad_frame, local = np.zeros_like(K), np.broadcast_to(np.eye(K.shape[-1]), K.shape).copy()
+    ad_frame[:, :6, :6] = ad_frame[:, 6:12, 6:12] = sp.ad(frame)
     local[:, :6, :6] = local[:, 6:12, 6:12] = to_a
-    K = K - C @ turn + M @ turn @ turn
-    C = C - 2.0 * M @ turn
-    back = np.swapaxes(local, -1, -2)
+    K = K - C @ ad_frame + M @ ad_frame @ ad_frame
+    C = C - 2.0 * M @ ad_frame
+    to_ground = np.swapaxes(local, -1, -2)
     ends = np.column_stack([batch.ends, batch.inside]) if massive else batch.ends
     spring = np.swapaxes(to_a, -1, -2) @ p.spring @ to_a
-    residual = (back @ p.residual[..., None])[..., 0]
-    out.add(ends, bm.Pencil(residual, back @ M @ local, back @ C @ local, back @ K @ local, spring))
+    residual = (to_ground @ p.residual[..., None])[..., 0]
+    out.add(ends, bm.Pencil(residual, to_ground @ M @ local, to_ground @ C @ local, to_ground @ K @ local, spring))
 
 
 def _check_steady(tree: Tree, batch: Batch, length: float, ya: Array, yb: Array, aa: Array) -> None:
@@ -283,7 +283,7 @@ def unbalanced(tree: Tree, k: Kinematics, c: Cartesian, q: Array, v: Array) -> A
 def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Array]:
     """Analytic M*, C*, K* (n, n) of τ with respect to accelerations, velocities and coordinates.
 
-    M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``of_joints``.
+    M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``joint_stiffness``.
     """
     B, B1, B2 = (rows.reshape(-1, rows.shape[-1]) for rows in (k.B, k.B1, k.B2))
     on_M, on_C = c.M, c.C
@@ -291,14 +291,14 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     C = B.T @ (2.0 * (on_M @ B1) + on_C @ B)
     K = B.T @ (on_M @ B2 + on_C @ B1 + c.K @ B)
     j = tree.joints
-    K[:j, :j] += of_joints(tree, k, c)
+    K[:j, :j] += joint_stiffness(tree, k, c)
     for s in tree.mechanism.coordinate_springs:
         i = tree.coordinate(s.coordinate)
         C[i, i] += s.damping
     return M, C, K
 
 
-def of_joints(tree: Tree, k: Kinematics, c: Cartesian) -> Array:
+def joint_stiffness(tree: Tree, k: Kinematics, c: Cartesian) -> Array:
     """Springs on coordinates and between bodies, and G (j, j): the part of K* that is not a projection of K.
 
     G_ik = −(J_i × J_k)ᵀ f_i for i beyond k, f_i the total wrench on all bodies that coordinate i carries: the rotation of the
@@ -307,8 +307,8 @@ def of_joints(tree: Tree, k: Kinematics, c: Cartesian) -> Array:
     j = tree.joints
     transmitted = carried(tree, c.g[: len(tree.bodies)])[:j]  # f_i
     force = -(np.swapaxes(sp.ad(k.J.T[:j]), -1, -2) @ transmitted[..., None])[..., 0]  # J_i ×* f_i
-    beyond = tree.moves_link[:j, :j] & ~np.eye(j, dtype=bool)
-    K = beyond.T * (k.J.T[:j] @ force.T)
+    descends = tree.moves_link[:j, :j] & ~np.eye(j, dtype=bool)
+    K = descends.T * (k.J.T[:j] @ force.T)
     rows = np.append(k.B[: len(tree.bodies), :, :j], np.zeros((1, 6, j)), axis=0)
     strain = (rows[c.ends[:, 1]] - rows[c.ends[:, 0]]).reshape(-1, j)  # exact: columns of both ends cancel
     K += strain.T @ (c.stiffness @ strain.reshape(-1, 6, j)).reshape(-1, j)

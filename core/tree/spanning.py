@@ -26,22 +26,22 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     check(mechanism)
     added = _Coordinates()
     # Φ = [Φᴶ; Φᶜ; Φᴹ] = 0 (eq. 2): joints of the tree, ``cuts``, and the mechanism's motions
-    place, cuts = _spanned(mechanism, added)
+    placement, cuts = _spanned(mechanism, added)
     names = [b.name for b in mechanism.bodies]
     # each cut joint leads to a massless copy of its child, which is welded to the child
-    copies = [_hang(joint, True, place, added) for joint in cuts]
+    copies = [_hang(joint, True, placement, added) for joint in cuts]
     originals = [-1 if joint.child == GROUND else names.index(joint.child) for joint in cuts]
     bodies = (*names, *(f"{joint.child} beyond {joint.name}" for joint in cuts))
     inertia = [*(b.inertia for b in mechanism.bodies), *np.zeros((len(cuts), 6, 6))]
-    links = [*(place[name] for name in names), *copies]
+    links = [*(placement[name] for name in names), *copies]
     inner = [_inner(added, k, beam.beams.inner) for k, beam in enumerate(mechanism.beams)]
     n = len(added.names)
-    before, inside = np.array(added.before, dtype=np.intp), np.array([j for j in inner if j >= 0], dtype=np.intp)
+    parent, inside = np.array(added.parent, dtype=np.intp), np.array([j for j in inner if j >= 0], dtype=np.intp)
     link = np.array([k for k, _ in links], dtype=np.intp)
     tree = Tree(
         mechanism=mechanism,
         coordinates=tuple(added.names),
-        parent=before,
+        parent=parent,
         fixed=np.array(added.fixed).reshape(n, 4, 4),
         screw=np.array(added.screw).reshape(n, 6),
         bodies=bodies,
@@ -62,53 +62,53 @@ class _Coordinates:
     """Coordinates while a tree is built; fields as in ``Tree``."""
 
     names: list[str] = field(default_factory=list)
-    before: list[int] = field(default_factory=list)
+    parent: list[int] = field(default_factory=list)
     fixed: list[Array] = field(default_factory=list)
     screw: list[Array] = field(default_factory=list)
 
-    def add(self, name: str, before: int, fixed: Array, screw: Array) -> int:
+    def add(self, name: str, parent: int, fixed: Array, screw: Array) -> int:
         """Add a coordinate; return the number of the link that it moves."""
         self.names.append(name)
-        self.before.append(before)
+        self.parent.append(parent)
         self.fixed.append(fixed)
         self.screw.append(screw)
         return len(self.names) - 1
 
 
-Place = tuple[int, Array]
+Placement = tuple[int, Array]
 """A link, −1 for the ground, and a pose on it."""
 
 
-def _spanned(mechanism: Mechanism, added: _Coordinates) -> tuple[dict[str, Place], list[Joint]]:
+def _spanned(mechanism: Mechanism, added: _Coordinates) -> tuple[dict[str, Placement], list[Joint]]:
     """The place of every body and the cut joints; the tree's coordinates are added."""
-    place: dict[str, Place] = {GROUND: (-1, np.eye(4))}
+    placement: dict[str, Placement] = {GROUND: (-1, np.eye(4))}
     waiting = [j for j in mechanism.joints if not j.cut]
     cuts = [j for j in mechanism.joints if j.cut]
-    while ready := next((j for j in waiting if j.parent in place or j.child in place), None):
+    while ready := next((j for j in waiting if j.parent in placement or j.child in placement), None):
         waiting.remove(ready)
-        if ready.parent in place and ready.child in place:
+        if ready.parent in placement and ready.child in placement:
             cuts.append(ready)
-        elif ready.parent in place:
-            place[ready.child] = _hang(ready, True, place, added)
+        elif ready.parent in placement:
+            placement[ready.child] = _hang(ready, True, placement, added)
         else:
-            place[ready.parent] = _hang(ready, False, place, added)
+            placement[ready.parent] = _hang(ready, False, placement, added)
     for body in mechanism.bodies:
-        if body.name not in place:
+        if body.name not in placement:
             raise MechanismError(
                 f"body {body.name!r}: no joint connects it to the ground; add one (a free joint if it floats)"
             )
-    return place, cuts
+    return placement, cuts
 
 
-def _hang(joint: Joint, forward: bool, place: Mapping[str, Place], added: _Coordinates) -> Place:
+def _hang(joint: Joint, forward: bool, placement: Mapping[str, Placement], added: _Coordinates) -> Placement:
     """Add the joint's coordinates, from the end that is already placed; return the place of the other end."""
-    near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
-    link, pose = place[joint.parent if forward else joint.child]
-    pose = pose @ near
+    near_frame, far_frame = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
+    link, pose = placement[joint.parent if forward else joint.child]
+    pose = pose @ near_frame
     steps = list(zip(coordinate_names(joint), SCREWS[joint.kind], strict=True))
     for name, (_, screw) in steps if forward else reversed(steps):
         link, pose = added.add(name, link, pose, screw if forward else -screw), np.eye(4)
-    return link, pose @ sp.inverse(far)
+    return link, pose @ sp.inverse(far_frame)
 
 
 def _inner(added: _Coordinates, beam: int, count: int) -> int:

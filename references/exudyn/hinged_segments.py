@@ -190,14 +190,14 @@ def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[A
     body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
     s = np.append(s, blade.length)
     hinge = np.searchsorted(hinges, s) - 1
-    there, section = _frames(blade, s)
+    centres, section = _frames(blade, s)
     to_hinge = np.swapaxes(axes[hinge], 1, 2)
-    turn, lever = to_hinge @ section, skew((to_hinge @ (there - place[hinge])[..., None])[..., 0])
-    back = np.swapaxes(turn, 1, 2)
+    to_hinge_axes, lever = to_hinge @ section, skew((to_hinge @ (centres - place[hinge])[..., None])[..., 0])
+    to_section_axes = np.swapaxes(to_hinge_axes, 1, 2)
     m = body[:, 0, 0]
-    offset = turn @ -body[:, :3, 3:] @ back  # momentum m (v + ω × c) makes the block -m [c]×
+    offset = to_hinge_axes @ -body[:, :3, 3:] @ to_section_axes  # momentum m (v + ω × c) makes the block -m [c]×
     first = offset + m[:, None, None] * lever
-    second = turn @ body[:, 3:, 3:] @ back - first @ lever - lever @ offset
+    second = to_hinge_axes @ body[:, 3:, 3:] @ to_section_axes - first @ lever - lever @ offset
     sums = [np.zeros((len(hinges), *part.shape[1:])) for part in (m, first, second)]
     for total, part in zip(sums, (m, first, second), strict=True):
         np.add.at(total, hinge, part)

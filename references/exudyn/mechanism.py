@@ -131,7 +131,7 @@ def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:
     return stages(tree, made, _steady_state(tree, made, q))
 
 
-def _check_constant(tree: Tree, found: Stages) -> None:
+def _check_constant(tree: Tree, at_steady: Stages) -> None:
     """Compare Exudyn's reduced matrices with those at another azimuth.
 
     Raises:
@@ -139,13 +139,15 @@ def _check_constant(tree: Tree, found: Stages) -> None:
     """
     v = velocity(tree)
     fastest = float(np.abs(v).max(initial=0.0))
-    if fastest == 0.0 or not found.null.shape[1]:
+    if fastest == 0.0 or not at_steady.null.shape[1]:
         return
-    later = stages(tree, system(tree), found.q + v * (1.9 / fastest))
-    null, powers = found.null, (2, 1, 0)
-    here, there = ([fastest**p * m for p, m in zip(powers, one.reduced(null), strict=True)] for one in (found, later))
-    size = max(float(np.abs(a).max()) for a in here)
-    if max(float(np.abs(a - b).max()) for a, b in zip(here, there, strict=True)) > 1e-6 * size:
+    later = stages(tree, system(tree), at_steady.q + v * (1.9 / fastest))
+    null, powers = at_steady.null, (2, 1, 0)
+    first, second = (
+        [fastest**p * m for p, m in zip(powers, matrices.reduced(null), strict=True)] for matrices in (at_steady, later)
+    )
+    size = max(float(np.abs(a).max()) for a in first)
+    if max(float(np.abs(a - b).max()) for a, b in zip(first, second, strict=True)) > 1e-6 * size:
         raise CodeError("periodic: the matrices change with the azimuth; this adapter needs constant ones")
 
 

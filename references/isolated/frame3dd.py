@@ -134,8 +134,8 @@ def _at_nodes(ends: Array, s: Array, amount: Array) -> Array:
     """(n+1,) nodal values of amounts at ``s`` in each element, distributed to its nodes with the same sum and moment."""
     along = (s.reshape(-1, POINTS) - ends[:-1, None]) / np.diff(ends)[:, None]
     amount = amount.reshape(-1, POINTS)
-    left, right = np.sum(amount * (1 - along), axis=1), np.sum(amount * along, axis=1)
-    return np.append(left, 0.0) + np.append(0.0, right)
+    at_start, at_end = np.sum(amount * (1 - along), axis=1), np.sum(amount * along, axis=1)
+    return np.append(at_start, 0.0) + np.append(0.0, at_end)
 
 
 CODE = Frame3DD()

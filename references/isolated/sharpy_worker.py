@@ -47,9 +47,9 @@ def solve(request):
     size = np.tile(np.repeat([length, 1.0], 3), d // 6)
     while done < 1.0:
         load = min(1.0, done + step)
-        found = newton(xbeam, beam, state, request["omega"] * load**0.5, steady, size)
-        if found is not None:
-            steady, done = found, load
+        balanced = newton(xbeam, beam, state, request["omega"] * load**0.5, steady, size)
+        if balanced is not None:
+            steady, done = balanced, load
         elif step > 2.0**-6:
             step /= 2
         else:

@@ -206,9 +206,9 @@ def steady_coordinates(model: ChainModel, elastic: Array, omega: float, chain: M
     stiffness = np.zeros_like(elastic)
     while done < 1.0:
         load = min(1.0, done + step)
-        found = _newton(model, elastic, omega * load**0.5, q, chain)
-        if found is not None:
-            (q, stiffness), done = found, load
+        balanced = _newton(model, elastic, omega * load**0.5, q, chain)
+        if balanced is not None:
+            (q, stiffness), done = balanced, load
         elif step > SMALLEST_RAMP:
             step /= 2
         else:

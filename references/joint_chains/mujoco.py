@@ -46,11 +46,11 @@ class MujocoChain:
         unit = np.eye(n)
         stiffness, gyroscopic = np.empty((n, n)), np.empty((n, n))
         for k, h in enumerate(self.step):
-            one, two = (
+            near, far = (
                 (self._force(q + s * h * unit[k], rates) - self._force(q - s * h * unit[k], rates)) / (2 * s * h)
                 for s in (1, 2)
             )
-            stiffness[:, k] = (4 * one - two) / 3
+            stiffness[:, k] = (4 * near - far) / 3
         self._place(q)
         rate = max(abs(omega), 1.0)
         for k in range(n):

@@ -99,11 +99,11 @@ class PinocchioMechanism(MechanismAdapter):
 
 
 def _modes(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
-    found = linearize(mechanism, guess)
-    values, x = damped_modes(found.M, found.C, found.K)
-    shapes = np.zeros((len(values), len(found.q)), np.complex128)
-    shapes[:, found.free] = (found.null @ x).T
-    return MechanismModes(found.names, found.q, values, shapes)
+    linear = linearize(mechanism, guess)
+    values, x = damped_modes(linear.M, linear.C, linear.K)
+    shapes = np.zeros((len(values), len(linear.q)), np.complex128)
+    shapes[:, linear.free] = (linear.null @ x).T
+    return MechanismModes(linear.names, linear.q, values, shapes)
 
 
 def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:
@@ -190,27 +190,27 @@ def _check_balance(plant: Plant, q: Array, free: Index) -> None:
         CodeError: they are not, as for a mass in free fall.
     """
     here = plant.at(q)
-    left = np.abs(null_space(here.J[:, free]).T @ here.force[free]).max(initial=0.0)
-    if left > 1e-8 * np.abs(here.force[free]).max(initial=0.0) + 1e-12 * np.abs(here.K).max(initial=0.0):
+    unbalanced = np.abs(null_space(here.J[:, free]).T @ here.force[free]).max(initial=0.0)
+    if unbalanced > 1e-8 * np.abs(here.force[free]).max(initial=0.0) + 1e-12 * np.abs(here.K).max(initial=0.0):
         raise CodeError("no steady state near the guess: unbalanced forces remain")
 
 
-def _check_constant(plant: Plant, found: Reduced) -> None:
+def _check_constant(plant: Plant, linear: Reduced) -> None:
     """Compare the reduced matrices with those at another azimuth.
 
     Raises:
         CodeError: they differ: the equations are periodic.
     """
     fastest = float(np.abs(plant.v).max(initial=0.0))
-    if not fastest or not found.null.shape[1]:
+    if not fastest or not linear.null.shape[1]:
         return
-    later = plant.at(found.q + plant.v * (AZIMUTH / fastest))
+    later = plant.at(linear.q + plant.v * (AZIMUTH / fastest))
     open_ = max((abs(f.value) for f in later.loops), default=0.0)
-    moved = np.abs(later.J[:, found.free] @ found.null).max(initial=0.0)
-    here, there = (found.M, found.C, found.K), reduced(later, found.free, found.null)
+    moved = np.abs(later.J[:, linear.free] @ linear.null).max(initial=0.0)
+    first, second = (linear.M, linear.C, linear.K), reduced(later, linear.free, linear.null)
     scale = (fastest**2, fastest, 1.0)
-    size = max(float(np.abs(s * a).max()) for s, a in zip(scale, here, strict=True))
-    change = max(float(np.abs(s * (a - b)).max()) for s, a, b in zip(scale, here, there, strict=True))
+    size = max(float(np.abs(s * a).max()) for s, a in zip(scale, first, strict=True))
+    change = max(float(np.abs(s * (a - b)).max()) for s, a, b in zip(scale, first, second, strict=True))
     if change > PERIODIC * size or max(open_, moved) > PERIODIC:
         raise CodeError("periodic: the matrices change with the azimuth; this adapter needs constant ones")
 

@@ -110,8 +110,8 @@ class Plant:
             force[j] += s.stiffness * (q[j] - s.neutral) + s.damping * self.v[j]
             K[j, j] += s.stiffness
             C[j, j] += s.damping
-        found = frames(pin, model, data, q, self._ids)
-        pairs = list(zip(found[::2], found[1::2], strict=True))
+        poses = frames(pin, model, data, q, self._ids)
+        pairs = list(zip(poses[::2], poses[1::2], strict=True))
         first, second = len(self.tree.loops), len(self.tree.loops) + len(m.springs)
         for s, (a, b) in zip(m.springs, pairs[first:second], strict=True):
             line = distance(a, b)

@@ -189,10 +189,10 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
     for basis, tolerance in ((max(11 * k // 4, 40), 1e-14), (max(4 * k, 120), 1e-13), (max(8 * k, 240), 1e-12)):
         try:
             limits: dict[str, Any] = {"ncv": min(2 * n, basis), "tol": tolerance, "maxiter": RESTARTS}
-            found = spla.eigs(operator, k=k, which="LM", v0=start, **limits)
+            solution = spla.eigs(operator, k=k, which="LM", v0=start, **limits)
         except spla.ArpackError:
             continue
-        values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], found)
+        values, x = cast(tuple[NDArray[np.complex128], NDArray[np.complex128]], solution)
         return -values.imag, x[:n]  # 1/(iω) = -i/ω
     raise CodeError(f"eigenproblem: ARPACK did not converge for {k} eigenvalues of {2 * n}: request fewer modes")
 

@@ -157,10 +157,10 @@ def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> t
     asked = min(count + SPARE, most)
     before = np.zeros(0)
     while True:
-        found = rotor.run(asked, check_model=False)
-        if not (found.frequencies > 0).all():
+        spectrum = rotor.run(asked, check_model=False)
+        if not (spectrum.frequencies > 0).all():
             raise CodeError("stiffness: not positive definite: no stable steady state at this rotor speed; lower it")
-        pairs = zip(found.frequencies, found.shapes, strict=True)
+        pairs = zip(spectrum.frequencies, spectrum.shapes, strict=True)
         moving = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
         frequencies = 2 * np.pi * np.array([f for f, _ in moving])
         confirmed = not doubted or (

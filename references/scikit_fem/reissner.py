@@ -153,13 +153,13 @@ def _elastic(beam: Beam, soft: NDArray[np.intp]) -> Array:
 
 def _shapes(beam: Beam, q: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) from all coordinates (N, m)."""
-    one = beam.basis.with_element(skfem().ElementLineP2())
-    read = one.probes(STATIONS[None] * beam.blade.length)
+    scalar = beam.basis.with_element(skfem().ElementLineP2())
+    sampling = scalar.probes(STATIONS[None] * beam.blade.length)
     out = np.empty((q.shape[1], len(STATIONS), 4), complex)
     for k in range(4):
-        of = np.empty(one.N, dtype=np.intp)
-        of[one.nodal_dofs[0]], of[one.interior_dofs[0]] = beam.basis.nodal_dofs[k], beam.basis.interior_dofs[k]
-        out[:, :, k] = (read @ q[of]).T
+        of = np.empty(scalar.N, dtype=np.intp)
+        of[scalar.nodal_dofs[0]], of[scalar.interior_dofs[0]] = beam.basis.nodal_dofs[k], beam.basis.interior_dofs[k]
+        out[:, :, k] = (sampling @ q[of]).T
     return out
 
 

@@ -154,8 +154,8 @@ def mixed(u: Any, v: Any, w: Any) -> Any:
     return _product(v, w.on, local(u))
 
 
-def _product(left: Any, matrix: Array, right: Any) -> Any:
-    return np.einsum("i...,i...", left, np.einsum("ij...,j...->i...", matrix, right))
+def _product(first: Any, matrix: Array, second: Any) -> Any:
+    return np.einsum("i...,i...", first, np.einsum("ij...,j...->i...", matrix, second))
 
 
 def linear(v: Any, w: Any) -> Any:

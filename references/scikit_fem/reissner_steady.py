@@ -32,19 +32,19 @@ def steady_state(beam: Beam, omega: float) -> State:
     if not omega:
         return state
     for ramp in RAMPS:
-        found = _raised(beam, omega, ramp)
-        if found is not None:
+        balanced = _raised(beam, omega, ramp)
+        if balanced is not None:
             break
     else:
         raise CodeError(f"omega: {omega:g} rad/s: no steady state found in {RAMPS[-1]} steps from zero speed; lower it")
     joint = np.flatnonzero(np.isfinite(beam.blade.root))
-    turns = np.sort(np.abs(found.root[: len(joint)][joint >= 3]))
+    turns = np.sort(np.abs(balanced.root[: len(joint)][joint >= 3]))
     if len(turns) > 1 and turns[-1] * turns[-2] > COMMUTE:
         raise CodeError(
             f"{beam.blade.name}: the root rotates about two axes, by {turns[-1]:.2g} and {turns[-2]:.2g} rad: "
             "the weak form does not define their order"
         )
-    return found
+    return balanced
 
 
 def _raised(beam: Beam, omega: float, steps: int) -> State | None:
@@ -54,10 +54,10 @@ def _raised(beam: Beam, omega: float, steps: int) -> State | None:
         speed = omega * np.sqrt(k / steps)
         if k == 1:
             state = after_step(beam, state, 0 * state.root, _statics(beam, state, speed))
-        found = _equilibrium(beam, state, speed)
-        if found is None:
+        balanced = _equilibrium(beam, state, speed)
+        if balanced is None:
             return None
-        state = found
+        state = balanced
     return state
 
 

@@ -78,15 +78,18 @@ def modes(blade: Blade, omega: float, elements: int, count: int, solve: Solve) -
             f"omega: {omega:g} rad/s: strain at the root {strain:.1e}, the material stiffens above {STRAIN:g}; lower it"
         )
     bricks, material = bar(blade, LAYERS * -(-elements // LAYERS))
-    wanted = count + SPARE
+    requested = count + SPARE
     while True:
-        found = solve(bricks, material, wanted)
-        kept = np.flatnonzero(~_turning(found, sample(blade, 0.0)))[:count]
-        if len(kept) == count or len(found.frequencies) < wanted:
+        spectrum = solve(bricks, material, requested)
+        kept = np.flatnonzero(~_turning(spectrum, sample(blade, 0.0)))[:count]
+        if len(kept) == count or len(spectrum.frequencies) < requested:
             return replace(
-                found, frequencies=found.frequencies[kept], shapes=found.shapes[kept], damping=np.zeros(len(kept))
+                spectrum,
+                frequencies=spectrum.frequencies[kept],
+                shapes=spectrum.shapes[kept],
+                damping=np.zeros(len(kept)),
             )
-        wanted *= 2
+        requested *= 2
 
 
 @cache_last

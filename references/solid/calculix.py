@@ -54,8 +54,8 @@ def version() -> str | None:
     if shutil.which("ccx") is None:
         return None
     said = subprocess.run(["ccx", "-v"], capture_output=True, text=True, timeout=TIMEOUT, check=False).stdout
-    found = re.search(r"Version\s+(\S+)", said)
-    return found[1] if found else "unknown"
+    match = re.search(r"Version\s+(\S+)", said)
+    return match[1] if match else "unknown"
 
 
 def modes(
@@ -113,8 +113,8 @@ def _restrained(forces: Array, places: Index) -> list[str]:
     follow, lead, ratio = workless(root.reshape(-1, 6))
     node, directions = places[0].ravel() + 1, places[0].size
     lines = []
-    for one, row in zip(follow, ratio, strict=True):
-        terms = [(one, -1.0), *((other, value) for other, value in zip(lead, row, strict=True) if value)]
+    for dependent, row in zip(follow, ratio, strict=True):
+        terms = [(dependent, -1.0), *((other, value) for other, value in zip(lead, row, strict=True) if value)]
         lines += ["*EQUATION", str(len(terms))]
         lines += [f"{node[k % directions]},{k // directions + 1},{value:.12g}" for k, value in terms]
     return lines

@@ -56,8 +56,8 @@ class Calculix(BladeAdapter):
             points = solid.place(STATIONS * solid.length)
             return calculix.modes(bricks, solid.material, omega, count, root, points)
 
-        def solved(bricks: Bricks, material: Orthotropic, wanted: int) -> Modes:
-            return calculix.modes(bricks, material, omega, wanted, clamped(blade.hub_radius))
+        def solved(bricks: Bricks, material: Orthotropic, count: int) -> Modes:
+            return calculix.modes(bricks, material, omega, count, clamped(blade.hub_radius))
 
         return bar.modes(blade, omega, elements, count, solved)
 

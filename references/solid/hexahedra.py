@@ -129,8 +129,8 @@ def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss
         A *= s.volume[e, :, None, None, None, None]
         n = len(A)
         right = A.reshape(n, points, 27, 3) @ s.slopes[e].swapaxes(2, 3)
-        left = s.slopes[e].transpose(0, 2, 1, 3).reshape(n, size, 3 * points)
-        whole = (left @ right.reshape(n, 3 * points, 9 * size)).reshape(n, size, 3, 3, size)
+        weighted = s.slopes[e].transpose(0, 2, 1, 3).reshape(n, size, 3 * points)
+        whole = (weighted @ right.reshape(n, 3 * points, 9 * size)).reshape(n, size, 3, 3, size)
         out[:, :, e] = whole.transpose(2, 3, 0, 1, 4)
     out = 0.5 * (out + out.transpose(1, 0, 2, 4, 3))  # equal but for rounding
     entry, rows, columns, order = _pattern(s.own, len(s.nodes))
@@ -235,14 +235,14 @@ def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
         clamp: which displacements are fixed, see ``mesh``; or ``tractions`` (3n, 6): nodal forces that do no work, so that
             six mean motions are fixed.
     """
-    one = ss.csc_array(ss.eye_array(3 * len(s.nodes)))
+    identity = ss.csc_array(ss.eye_array(3 * len(s.nodes)))
     if callable(clamp):
-        return ss.csr_array(one[:, ~fixed_by(clamp, s.nodes).T.ravel()])
+        return ss.csr_array(identity[:, ~fixed_by(clamp, s.nodes).T.ravel()])
     follow, lead, matrix = workless(clamp)
     ratio = ss.coo_array(matrix)
-    others = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=one.shape)
+    others = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=identity.shape)
     kept = np.setdiff1d(np.arange(3 * len(s.nodes)), follow)
-    return ss.csr_array(ss.csc_array(one + others)[:, kept])
+    return ss.csr_array(ss.csc_array(identity + others)[:, kept])
 
 
 def steady_displacements(s: Solid, omega: float, free: Any) -> tuple[Array, Any]:

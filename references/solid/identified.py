@@ -30,14 +30,14 @@ def stiffness(
 
 def _compliance(solid: CurvedSolid, at: float, across: tuple[int, int], stub: float, per_chord: int) -> Array:
     """(6, 6) of the sections of the slice around ``at``."""
-    found = inside(solid, at, across, stub, per_chord)
+    stub_inside = inside(solid, at, across, stub, per_chord)
     t, weight = np.polynomial.legendre.leggauss(GAUSS)
-    s = at + 0.5 * found.length * np.append(0.0, t)
+    s = at + 0.5 * stub_inside.length * np.append(0.0, t)
     poses = sp.pose(solid.axes(s), solid.curve(s))
-    back = sp.adjoint(sp.inverse(poses[0]))
+    to_section = sp.adjoint(sp.inverse(poses[0]))
     lever = sp.adjoint(sp.inverse(poses[0]) @ poses[1:])
-    spread = 0.5 * found.length * np.einsum("q,qij,qkl->ikjl", weight, lever, lever).reshape(36, 36)
-    return np.linalg.solve(spread, (back @ found.energy @ back.T).ravel()).reshape(6, 6)
+    spread = 0.5 * stub_inside.length * np.einsum("q,qij,qkl->ikjl", weight, lever, lever).reshape(36, 36)
+    return np.linalg.solve(spread, (to_section @ stub_inside.energy @ to_section.T).ravel()).reshape(6, 6)
 
 
 def mass(solid: CurvedSolid, s: Array) -> Array:
@@ -56,8 +56,8 @@ def mass(solid: CurvedSolid, s: Array) -> Array:
     chord = solid.section(s, np.array(1.0), np.array(0.0))[0] - solid.section(s, np.array(0.0), np.array(0.0))[0]
     area = chord[:, None, None] * thick[:, :, None] * w[:, None] * w
     dm = solid.material.density * area * (1.0 + skew[:, 0, 2, None, None] * z - skew[:, 1, 0, None, None] * y)
-    one = np.eye(3)
+    identity = np.eye(3)
     cross = np.zeros((*y.shape, 3, 3))
     cross[..., 0, 1], cross[..., 0, 2], cross[..., 1, 0], cross[..., 2, 0] = -z, y, z, -y
-    move = np.concatenate([np.broadcast_to(one, cross.shape), -cross], axis=-1)
+    move = np.concatenate([np.broadcast_to(identity, cross.shape), -cross], axis=-1)
     return np.einsum("sab,sabji,sabjk->sik", dm, move, move)

@@ -30,11 +30,11 @@ class Material:
     def moduli(self) -> Array:
         """C (3, 3, 3, 3), Pa: S_ij = C_ijkl E_kl."""
         lam, mu = self.lame
-        one = np.eye(3)
+        delta = np.eye(3)
         return (
-            lam * np.einsum("ij,kl->ijkl", one, one)
-            + mu * np.einsum("ik,jl->ijkl", one, one)
-            + mu * np.einsum("il,jk->ijkl", one, one)
+            lam * np.einsum("ij,kl->ijkl", delta, delta)
+            + mu * np.einsum("ik,jl->ijkl", delta, delta)
+            + mu * np.einsum("il,jk->ijkl", delta, delta)
         )
 
 

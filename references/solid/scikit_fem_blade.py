@@ -62,8 +62,8 @@ class ScikitFemSolid(BladeAdapter):
         if solid:
             return modes(solid, omega, bar.LAYERS * -(-elements // bar.LAYERS), count)
 
-        def solved(bricks: Bricks, material: Orthotropic, wanted: int) -> Modes:
-            return hexahedra.modes(bricks, material, omega, wanted, clamped(blade.hub_radius))
+        def solved(bricks: Bricks, material: Orthotropic, count: int) -> Modes:
+            return hexahedra.modes(bricks, material, omega, count, clamped(blade.hub_radius))
 
         return bar.modes(blade, omega, elements, count, solved)
 

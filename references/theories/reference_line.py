@@ -56,8 +56,8 @@ def line(blade: Blade, s: Array) -> ReferenceLine:
     piece = np.searchsorted(ends[1:-1], s.mean(1))
     for k in np.unique(piece):
         inside = (blade.stations >= ends[k]) & (blade.stations <= ends[k + 1])
-        known = blade.stations[inside], blade.curve[inside]
-        spline = make_interp_spline(*known, k=min(3, inside.sum() - 1))
+        given = blade.stations[inside], blade.curve[inside]
+        spline = make_interp_spline(*given, k=min(3, inside.sum() - 1))
         place[piece == k], slope[piece == k] = spline(s[piece == k]), spline.derivative()(s[piece == k])
     tangent = slope.reshape(-1, 3) / np.linalg.norm(slope.reshape(-1, 3), axis=1, keepdims=True)
     across = np.cross([1.0, 0.0, 0.0], tangent)
@@ -120,5 +120,5 @@ def _flat(blade: Blade, ends: Array) -> NDArray[np.bool_]:
     h, x, w = np.diff(ends)[:, None], *gauss.rule(3)
     growth = last / first - 1.0
     exact = h / first * np.divide(np.log1p(growth), growth, out=np.ones_like(growth), where=growth != 0.0)
-    found = h * (w / (first[..., None] + (last - first)[..., None] * x)).sum(-1)
-    return (np.abs(found - exact) < 1e-6 * exact.sum(0)).all(1)
+    computed = h * (w / (first[..., None] + (last - first)[..., None] * x)).sum(-1)
+    return (np.abs(computed - exact) < 1e-6 * exact.sum(0)).all(1)

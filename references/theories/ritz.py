@@ -28,9 +28,9 @@ Part = tuple[Array, NDArray[np.complex128], Array]
 """Frequencies (m,), shapes (m, 21, 4), and relative uncertainties (m,) or none (0,), of an uncoupled set of modes."""
 
 
-def integral(weight: Array, left: Array, right: Array | None = None) -> Array:
-    """``∫ weight left right``, (n, k), from values (q, n) and (q, k) at quadrature points; ``right`` is ``left`` if omitted."""
-    return left.T @ (weight[:, None] * (left if right is None else right))
+def integral(weight: Array, test: Array, trial: Array | None = None) -> Array:
+    """``∫ weight test trial``, (n, k), from values (q, n) and (q, k) at quadrature points; ``trial`` is ``test`` if omitted."""
+    return test.T @ (weight[:, None] * (test if trial is None else trial))
 
 
 def apart(first: Array, second: Array) -> Array:

@@ -16,7 +16,7 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.elastodyn_shapes import ELASTODYN_NAMES, POWERS, Polynomial
 from ...cases.input import atomic
 from ...core.modes import STATIONS
-from ...core.participation import gyration, in_blade_axes, spoken
+from ...core.participation import describe_fractions, gyration, in_blade_axes
 from ..shared.certain import certain
 from ..shared.style import FAINT, MUTED, WIDTH, house, key, spread, title
 from ..shared.units import Units
@@ -76,7 +76,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
             shown = certain(float(hertz), float(diagram.tracks.uncertainty[k, t]), 4)
             axes.set_title(f"{name}   {shown} {units.frequency}", size=9.5, pad=17)
             axes.annotate(
-                spoken(diagram.energy_fractions[k, t]),
+                describe_fractions(diagram.energy_fractions[k, t]),
                 (0, 1),
                 (0, 6),
                 "axes fraction",

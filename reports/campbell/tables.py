@@ -17,7 +17,7 @@ from ...cases.campbell.encounters import Encounter
 from ...cases.campbell.margins import Southwell
 from ...cases.campbell.required import UNITS, RequiredMargin
 from ...cases.campbell.sweep import Named
-from ...core.participation import MIXED, spoken
+from ...core.participation import MIXED, describe_fractions
 from ..shared import table_columns
 from ..shared.certain import certain, relative, remarks
 from ..shared.units import Units
@@ -60,7 +60,7 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
     for t in range(tracks.count):
         k = np.flatnonzero(tracks.place[:, t] >= 0)
         fit = diagram.southwell[t]
-        row = [diagram.labels[t], spoken(diagram.energy_fractions[k[0], t])]
+        row = [diagram.labels[t], describe_fractions(diagram.energy_fractions[k[0], t])]
         for end in (0, -1):
             f, sure = tracks.frequencies[end, t] * units.frequencies, tracks.uncertainty[end, t]
             row.append(certain(float(f), float(sure)) if np.isfinite(f) else "–")
@@ -166,7 +166,7 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
                 f"{lower} × {upper}",
                 f"{100 * e.exchanged:.0f} %"
                 + ("" if e.whole else " (incomplete: ends at the range of speeds or at another encounter)"),
-                f"{spoken(e.before[0])} → {spoken(e.after[0])}",
+                f"{describe_fractions(e.before[0])} → {describe_fractions(e.after[0])}",
             )
         )
     head = (

@@ -10,7 +10,7 @@ from hypothesis import strategies as st
 from southwell.cases.input import library
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS, Modes
-from southwell.core.participation import DOMINANT_FRACTION, families, numbered, participation, spoken
+from southwell.core.participation import DOMINANT_FRACTION, describe_fractions, families, numbered, participation
 from southwell.core.solve import modes as solve
 from southwell.core.space import spatial as sp
 
@@ -146,8 +146,8 @@ def test_a_mode_without_a_dominant_motion_is_mixed_and_its_energy_fractions_are_
         [[0.55, 0.42, 0.03, 0.0], [DOMINANT_FRACTION, 1 - DOMINANT_FRACTION, 0, 0], [0.02, 0.9, 0.08, 0]]
     )
     assert numbered(families(fractions)) == ("mixed 1", "flapwise 1", "edgewise 1")
-    assert spoken(fractions[0]) == "55 % flapwise, 42 % edgewise"
-    assert spoken(fractions[2]) == "90 % edgewise, 8 % torsion"
+    assert describe_fractions(fractions[0]) == "55 % flapwise, 42 % edgewise"
+    assert describe_fractions(fractions[2]) == "90 % edgewise, 8 % torsion"
 
 
 def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:

@@ -16,7 +16,7 @@ from southwell.core.element.sections import frames
 from southwell.core.participation import participation
 from southwell.core.solve import mesh_modes
 from southwell.core.space import spatial as sp
-from southwell.core.tree.as_mechanism import mechanism, one
+from southwell.core.tree.as_mechanism import mechanism, single_element
 from southwell.references.joint_chains import joint_chain
 from southwell.references.protocol import registry
 from southwell.tests.support.codes import BLADE_CODES
@@ -78,7 +78,7 @@ def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) ->
     joints = tuple(
         mb.Joint(f"tip element {k}", "elastic", f"tip {k}", f"tip {k + 1}", at_parent=undeformed[k]) for k in range(2)
     )
-    beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", one(second.beams, k)) for k in range(2))
+    beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", single_element(second.beams, k)) for k in range(2))
     whole = replace(m, bodies=(*m.bodies, *bodies), joints=(*m.joints, corner, *joints), beams=(*m.beams, *beams))
     found = mesh_modes(kinked(), OMEGA, 10, 8, mass=mass, stiffness=stiffness).frequencies
     np.testing.assert_allclose(found, mb.solve(whole).frequencies[:8], rtol=1e-9)

@@ -21,7 +21,7 @@ from southwell.core.mechanism.joints import Joint, at
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import eigen, modal
 from southwell.core.tree import dynamics
-from southwell.core.tree.as_mechanism import mechanism, one
+from southwell.core.tree.as_mechanism import mechanism, single_element
 from southwell.core.tree.kinematics import kinematics
 from southwell.core.tree.spanning import compile_tree
 from southwell.tests.support.beams import PARK
@@ -296,7 +296,7 @@ def test_portal_frame_on_a_rotating_table() -> None:
     """Rigid girder on two clamped columns: k = 24 EI/h³ each way; both directions couple through Coriolis as on springs."""
     h, span, mass, omega, ei = 2.0, 3.0, 40.0, 1.0, 900.0
     column = uniform_blade("column", h, 0.0, EA=1e7, GJ=1e7, EI_y=ei, EI_z=ei, mass=1e-6)
-    beam = one(discretize(column, 1, mass="half_end").beams, 0)
+    beam = single_element(discretize(column, 1, mass="half_end").beams, 0)
     up = np.array([[0.0, 0, -1.0], [0, 1.0, 0], [1.0, 0, 0]])
     feet = [sp.pose(up, np.array([x, 0.0, 0.0])) for x in (-span / 2, span / 2)]
     heads = [sp.pose(up, np.array([x, 0.0, 0.0])) for x in (-span / 2, span / 2)]

@@ -11,7 +11,7 @@ from southwell.core import multibody as mb
 from southwell.core.blade import Blade, section_mass, section_stiffness
 from southwell.core.element.discretize import discretize
 from southwell.core.space import spatial as sp
-from southwell.core.tree.as_mechanism import one
+from southwell.core.tree.as_mechanism import single_element
 
 Complex = NDArray[np.complex128]
 
@@ -116,7 +116,7 @@ def ring(omega: float, arcs: int = ARCS) -> mb.Mechanism:
         np.zeros(9),
         curve=_RADIUS * np.stack([np.sin(angle), 1 - np.cos(angle), 0 * angle], axis=1),
     )
-    element = one(discretize(arc, 1).beams, 0)
+    element = single_element(discretize(arc, 1).beams, 0)
     place = sp.pose(sp.rotation(2, np.array(np.pi / 2)), np.array([_RADIUS, 0.0, 0.0]))
     names = [f"b{k}" for k in range(arcs)]
     return mb.Mechanism(
