@@ -18,7 +18,7 @@ unexport PYTHONDONTWRITEBYTECODE
 .PHONY: verify test test-slow coverage lint bench readme docs clean
 
 verify: $(INSTALLED)
-	$(BIN)/southwell verify --out reports/out
+	$(BIN)/southwell verify --out reports/out; status=$$?; $(BIN)/southwell pages reports/out && exit $$status
 
 # loadfile: all tests of a file run in one process, because they share fixtures
 test: $(INSTALLED)

@@ -37,6 +37,7 @@ COMMANDS = (
     (ONE_BLADE, "convert", "cli.convert:command", "Write a blade in another format."),
     (VERIFY, "verify", "cli.verify:command", "Solve blades with every code, compare the results and write a report."),
     (VERIFY, "report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
+    (VERIFY, "pages", "cli.pages:command", "Write a run as HTML, dashboard, and a summary on two pages."),
     (VERIFY, "cases", "cli.listings:cases", "List the cases that come with the package."),
     (
         VERIFY,

@@ -75,7 +75,7 @@ def command(
     after = history.entry(run, str(folder))
     if commit and not against:
         raise CaseError(f"--commit {commit}: no history: give its file by --against")
-    before = _before(against, commit) if against else nothing(after)
+    before = earlier(against, commit) if against else nothing(after)
     if partial:
         before = within(before, after)
     if (count := misses(before)) and not failed_baseline:
@@ -106,8 +106,12 @@ def command(
     return PASSED if gate.passed(strict) else FAILED
 
 
-def _before(path: Path, commit: str) -> Entry:
-    """The run to compare with."""
+def earlier(path: Path, commit: str) -> Entry:
+    """The run to compare with: of a folder or results file, or the last of a history, of the ``commit`` if given.
+
+    Raises:
+        CaseError: if there is none.
+    """
     if os.path.isdir(path) or _is_run(path):
         if commit:
             raise CaseError(f"--commit {commit}: {path} is one run, not a history: leave it out, or give a history")

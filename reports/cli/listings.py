@@ -50,7 +50,7 @@ code_app = App(name="codes", result_action="return_value")
 
 @code_app.default
 def codes(*, pages: Path | None = None) -> int:
-    """List the codes: version, what they share with core, how to install them.
+    """List the codes: version, what they share with Southwell's own solver, how to install them.
 
     Parameters
     ----------

@@ -1,0 +1,61 @@
+"""``southwell pages``: a run as pages for readers: report.html, the dashboard, and the summary on two pages."""
+
+from importlib.util import find_spec
+from pathlib import Path
+
+from ...cases.regression import history
+from ...cases.regression.gate import compare
+from ..ci import gate_text
+from ..dashboard.write import write as write_dashboard
+from ..shared import html
+from ..shared.statuses import INCOMPLETE, PASSED
+from ..shared.units import BY_KEY
+from ..verification import brief
+from .arguments import RESULTS, found, writing
+from .gate import earlier
+
+DASHBOARD = "dashboard"
+
+
+def command(
+    folder: Path, /, *, document: str = "", revision: str = "", since: Path | None = None, commit: str = ""
+) -> int:
+    """Write a run as HTML, dashboard, and a summary on two pages.
+
+    Files: report.html of an existing report.md, dashboard/index.html, and the summary, which has the verdict, the evidence, a
+    diagram, margins, digests, versions, and what changed since an earlier run:
+    summary.html, and summary.pdf if Typst is installed (extra `pdf`).
+
+    Parameters
+    ----------
+    folder
+        Output folder of `southwell verify`.
+    document
+        Document number on the cover.
+    revision
+        Revision on the cover.
+    since
+        History (`southwell history add`), or the output folder or results.jsonl of the run of an earlier release.
+    commit
+        The run of this commit, or release, in the history; its first characters suffice.
+    """
+    run = found(folder)
+    lines: list[str] = []
+    if since:
+        gate = compare(earlier(since, commit), history.entry(run, str(folder)))
+        units = {s.case: BY_KEY[s.unit] for s in run.settings}
+        counts = [f"{title}: {len(rows)}" for title, rows in gate_text.sections(gate, units)]
+        versions = [f"{name} {before} → {after}" for name, (before, after) in gate.versions.items()]
+        lines = [gate_text.verdict(gate, strict=False), *filter(None, ["; ".join(counts), "; ".join(versions)])]
+    with writing(folder):
+        written = [brief.write(run, folder, brief.Document(document, revision, lines))]
+        if (report := folder / "report.md").is_file():
+            written.append(html.write(report))
+        written.append(html.write(written[0]))
+        if find_spec("typst"):
+            from ..shared import pdf
+
+            written.append(pdf.write(written[0]))
+        written.append(write_dashboard({folder.name or RESULTS: run}, None, folder / DASHBOARD))
+    print(f"{folder}: {', '.join(str(path.relative_to(folder)) for path in written)}")
+    return INCOMPLETE if run.unfinished else PASSED
