@@ -26,8 +26,9 @@ from ..input import library
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control
-from ..plan import mechanism_case
-from ..plan.mechanism_case import MechanismCase
+from ..plan import mechanism
+from ..plan.blade import BladeSubject
+from ..plan.mechanism import MechanismSubject
 from ..run.executors import Serial
 from ..verify import matrix
 
@@ -131,20 +132,21 @@ def _only(thread: int, right: Callable[..., Any], wrong: Callable[..., Any]) -> 
 
 def cells(trial: Trial) -> tuple[Cell, ...]:
     """Cells of a trial run by the real matrix."""
-    if trial.case in library.mechanisms():
-        return matrix.run([_turning(trial)], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
-    case, changed = _variant(trial)
+    subject = _mechanism(trial) if trial.case in library.mechanisms() else _blade(trial)
+    return matrix.run([subject], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
+
+
+def _mechanism(trial: Trial) -> MechanismSubject:
+    subject = mechanism.subject(library.mechanism(trial.case))
+    described = replace(subject.described, mechanism=trial.altered(subject.described.mechanism))
+    return replace(subject, described=described, points=trial.speeds)
+
+
+def _blade(trial: Trial) -> BladeSubject:
+    case, variant = _variant(trial)
     given = case.text.compare
     compare = msgspec.structs.replace(given, modes=trial.modes or given.modes, motions=trial.motions or given.motions)
-    one = replace(case, variants=(changed,), text=msgspec.structs.replace(case.text, compare=compare))
-    return matrix.run([one], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
-
-
-def _turning(trial: Trial) -> MechanismCase:
-    case = mechanism_case.case(library.mechanism(trial.case))
-    (one,) = case.variants
-    described = replace(one.described, mechanism=trial.altered(one.described.mechanism))
-    return replace(case, variants=(replace(one, described=described, speeds=np.array(trial.speeds)),))
+    return BladeSubject(replace(case, text=msgspec.structs.replace(case.text, compare=compare)), variant)
 
 
 def _variant(trial: Trial) -> tuple[Case, Variant]:

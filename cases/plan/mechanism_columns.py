@@ -16,6 +16,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ...core import multibody as mb
 from ...core.effects import ALL_EFFECTS, Effects
+from ...core.mechanism.description import at_rate
 from ...core.participation import numbered
 from ...core.spectrum.eigen import EigenError
 from ...core.tree.dynamics import reduced_mass
@@ -25,14 +26,14 @@ from ...references.protocol.process import Failure, Limits
 from ...references.protocol.worker import MechanismAnswer as Answer
 from ...references.protocol.worker import mechanism_answers as answers
 from ...references.theories import blade_formulae
-from ..input.mechanism_schema import ClosedForm
+from ..input.mechanism_schema import ClosedForm, Compare
+from ..input.mechanisms import Described
 from ..judge.cells import Head, Rows, empty, failed
 from ..judge.pairing import LEAST_MAC
 from ..judge.results import Cell
 from ..judge.uncertainty import ROUNDING
 from ..judge.verdict import judge, unsigned
 from .column import Column, absent_work, failing_work, not_installed
-from .mechanism_case import MechanismCase, Turning
 
 _BY_HAND = Independence(
     engine="closed form",
@@ -58,19 +59,24 @@ class Reference:
     weight: Array
 
 
-def references(variant: Turning) -> References:
-    """Core's modes at each speed; a failure where core cannot solve it, or finds fewer modes than are compared."""
-    return {ALL_EFFECTS: [_reference(variant, omega) for omega in variant.speeds.tolist()]}
+def references(described: Described, speeds: Sequence[float], count: int) -> References:
+    """Core's modes at each speed; a failure where core cannot solve it, or finds fewer than the ``count`` compared modes."""
+    return {ALL_EFFECTS: [_reference(described, omega, count) for omega in speeds]}
 
 
-def _reference(variant: Turning, omega: float) -> Reference | Failure:
-    text = variant.described.text
+def turning(described: Described, omega: float) -> mb.Mechanism:
+    """The mechanism with its rotor at ``omega`` (rad/s)."""
+    return at_rate(described.mechanism, described.text.rotor, omega)
+
+
+def _reference(described: Described, omega: float, count: int) -> Reference | Failure:
+    independent = described.text.independent or None
     try:
-        found = mb.solve(variant.at(omega), variant.described.guess, independent=text.independent or None)
+        found = mb.solve(turning(described, omega), described.guess, independent=independent)
     except (mb.MechanismError, EigenError) as error:
         return Failure("no reference", f"speeds: {omega:g} rad/s: {error}")
-    if len(found.values) < variant.count:
-        few = f"compare.modes: {variant.count}: the mechanism has {len(found.values)} modes: reduce it"
+    if len(found.values) < count:
+        few = f"compare.modes: {count}: the mechanism has {len(found.values)} modes: reduce it"
         return Failure("no reference", few)
     state = found.linear.state
     weight = reduced_mass(state.kinematics, state.cartesian)
@@ -79,36 +85,34 @@ def _reference(variant: Turning, omega: float) -> Reference | Failure:
     return Reference(modes, found.damping, numbered(joints), weight)
 
 
-def columns(case: MechanismCase, codes: Sequence[Description], limits: Limits) -> list[Column]:
+def columns(described: Described, compare: Compare, codes: Sequence[Description], limits: Limits) -> list[Column]:
     """A column for each code and for the closed form; ``limits`` apply to each solution by a foreign code.
 
     Codes that accept only blades have no column, unless there are no other codes.
     """
-    (variant,) = case.variants
+    name, target = described.text.name, compare.target
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
-        head = Head(case.name, code.name, code.version or "", "same discretisation", case.target, code.shares)
-        work = _work(head, variant, code, limits)
+        head = Head(name, code.name, code.version or "", "same discretisation", target, code.shares)
+        work = _work(head, described, compare.modes, code, limits)
         solves = code.mechanisms and not code.failure and code.version is not None
         out.append(Column(code.name, ALL_EFFECTS, head, work, code.independence, solves=solves))
-    if form := variant.described.text.closed_form:
-        known = f"southwell {version('southwell')}"
-        head = Head(case.name, "closed form", known, "same discretisation", case.target, "nothing")
-        work = partial(_compared, head, variant, partial(_formula, form))
+    if form := described.text.closed_form:
+        head = Head(name, "closed form", f"southwell {version('southwell')}", "same discretisation", target, "nothing")
+        work = partial(_compared, head, described, compare.modes, partial(_formula, form))
         out.append(Column(head.code, ALL_EFFECTS, head, work, _BY_HAND))
     return out
 
 
-def _work(head: Head, variant: Turning, code: Description, limits: Limits) -> Work:
+def _work(head: Head, described: Described, count: int, code: Description, limits: Limits) -> Work:
     if code.failure:
         return failing_work(head, code.failure)
     if not code.mechanisms:
         return absent_work(head, "not applicable", "the code takes blades, not mechanisms")
     if code.version is None:
         return failing_work(head, not_installed(code))
-    return partial(
-        _compared, head, variant, partial(_ask, code.asked, code.version or "", variant.described.guess, limits)
-    )
+    ask = partial(_ask, code.asked, code.version or "", described.guess, limits)
+    return partial(_compared, head, described, count, ask)
 
 
 def _ask(
@@ -129,10 +133,12 @@ def _formula(form: ClosedForm, _: Sequence[mb.Mechanism], speeds: Sequence[float
         return [Failure("refused", f"closed_form.parameters: {error}")] * len(speeds)
 
 
-def _compared(head: Head, variant: Turning, solve: Solve, core: Sequence[tuple[float, Reference]]) -> Rows:
+def _compared(
+    head: Head, described: Described, count: int, solve: Solve, core: Sequence[tuple[float, Reference]]
+) -> Rows:
     speeds = [omega for omega, _ in core]
-    found = solve([variant.at(omega) for omega in speeds], speeds)
-    rows = [cells(head, omega, r, a, variant.count) for (omega, r), a in zip(core, found, strict=True)]
+    found = solve([turning(described, omega) for omega in speeds], speeds)
+    rows = [cells(head, omega, r, a, count) for (omega, r), a in zip(core, found, strict=True)]
     return [cell for row in rows for cell in row], []
 
 

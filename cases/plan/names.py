@@ -5,18 +5,15 @@ from collections.abc import Iterable, Sequence
 from ...references.protocol.description import Description
 from ...references.published import load
 from ..input.errors import CaseError
-from ..input.schema import Case
-from .columns import PAPER
-from .mechanism_case import MechanismCase
+from .blade_columns import PAPER
+from .subject import Subject
 from .user_results import UserResults
 
 OURS = ("core", "source's discretisation", PAPER, "closed form", "printed tables")
 """Columns of this package that are not codes, as named in results and in tables."""
 
 
-def unique(
-    cases: Sequence[Case | MechanismCase], codes: Sequence[Description], user_results: Sequence[UserResults]
-) -> None:
+def unique(subjects: Sequence[Subject], codes: Sequence[Description], user_results: Sequence[UserResults]) -> None:
     """Check that every name is used only once.
 
     Args:
@@ -25,18 +22,14 @@ def unique(
     Raises:
         CaseError: if a name is used twice; one line that identifies both uses.
     """
-    _once("case", ((v.name, _path(case)) for case in cases for v in case.variants), "leave one out, or rename it")
-    tables = [name for case in cases if isinstance(case, Case) for name in case.text.compare.tables]
+    _once("case", ((subject.name, subject.path) for subject in subjects), "leave one out, or rename it")
+    tables = [name for subject in subjects for name in subject.tables]
     columns = [(name, "this package") for name in OURS]
     for table in dict.fromkeys(tables):
         columns += [(f"{table}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)]
     columns += [(code.name, f"--codes {code.asked}") for code in codes]
     columns += [(one.name, f"--add {one.path}") for one in user_results]
     _once("code", columns, "leave one out, or give it another name")
-
-
-def _path(case: Case | MechanismCase) -> str:
-    return case.path if isinstance(case, Case) else case.described.path
 
 
 def _once(what: str, named: Iterable[tuple[str, str]], remedy: str) -> None:

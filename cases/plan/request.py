@@ -10,7 +10,7 @@ from ...references.protocol.process import Limits
 from ..input.errors import CaseError
 from ..input.readers import Mount
 from ..input.schema import Case, speed_range
-from .mechanism_case import MechanismCase
+from .subject import Subject
 
 RPM_PER_RAD_S = 30.0 / pi
 """Revolutions per minute in 1 rad/s."""
@@ -40,7 +40,7 @@ class Request:
     """Everything that a run is asked.
 
     Attributes:
-        subjects: cases and mechanisms by name, files of these or of blades, or cases as read; all cases if empty.
+        subjects: cases and mechanisms by name, files of these or of blades, or as read; all cases if empty.
         codes: names or import paths of codes; None for all.
         rpm, omega: rotor speeds of blade files as text, in rpm or rad/s.
         mount: mounting of blade files.
@@ -54,7 +54,7 @@ class Request:
         execution: where and how the run is executed.
     """
 
-    subjects: tuple[str | Case | MechanismCase, ...] = ()
+    subjects: tuple[str | Case | Subject, ...] = ()
     codes: tuple[str, ...] | None = None
     rpm: str | None = None
     omega: str | None = None

@@ -12,25 +12,23 @@ from ..input.properties import farthest
 from ..input.schema import Case, Variant
 from ..judge.results import Setting, Unit
 from ..judge.verdict import unsigned
-from .mechanism_case import MechanismCase, setting
 
 NOT_USED = "in its files, not used"
 """The fact that lists data in a blade's files that the blade does not use."""
 
 
-def settings(case: Case | MechanismCase) -> tuple[Setting, ...]:
-    """One setting for each blade of the case, or for its mechanism."""
-    if isinstance(case, MechanismCase):
-        return (setting(case),)
-    return tuple(_setting(case, variant) for variant in case.variants)
+def settings(case: Case) -> tuple[Setting, ...]:
+    """One setting for each blade of the case."""
+    return tuple(setting(case, variant) for variant in case.variants)
 
 
-def _setting(case: Case, variant: Variant) -> Setting:
+def setting(case: Case, variant: Variant) -> Setting:
+    """The setting of one blade."""
     text = case.text
     (unit,) = (u for u in get_args(Unit) if getattr(text.speeds, u) is not UNSET)
     speeds = variant.speeds * (30 / np.pi if unit == "rpm" else 1.0)
-    known = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
-    facts = {what: value for what, value in known.items() if value}
+    of_blade = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
+    facts = {what: value for what, value in of_blade.items() if value}
     facts["speeds"] = ", ".join(f"{v:.6g}" for v in speeds) + {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
     some = len(text.compare.motions) < len(MOTIONS)
     moving = f" that move mostly {' or '.join(text.compare.motions)}" if some else ""

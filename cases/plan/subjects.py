@@ -1,4 +1,4 @@
-"""The cases of a request: by name, from files, or made of blade files, with changed properties if asked."""
+"""The subjects of a request: by name, from files, or made of blade files, with changed properties if asked."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -14,13 +14,14 @@ from ..input.errors import CaseError
 from ..input.library import is_blade_file
 from ..input.readers import Mount
 from ..input.schema import Case
-from . import mechanism_case
-from .mechanism_case import MechanismCase
+from . import mechanism
+from .blade import blades
 from .request import Request, speeds
+from .subject import Subject
 
 
-def cases(request: Request, note: Callable[[str], None]) -> list[Case | MechanismCase]:
-    """The cases of a request; ``note`` is called with one line for each that is not run.
+def subjects(request: Request, note: Callable[[str], None]) -> list[Subject]:
+    """The subjects of a request; ``note`` is called with one line for each that is not run.
 
     Raises:
         CaseError: for a subject that cannot be read, or an option that does not apply to it.
@@ -28,25 +29,23 @@ def cases(request: Request, note: Callable[[str], None]) -> list[Case | Mechanis
     decks = speeds(request.rpm, request.omega)
     edits = [blade_changes.parse(text) for text in request.changes]
     asked = request.subjects
-    subjects = [s for k, s in enumerate(asked) if not isinstance(s, str) or s not in asked[:k]] or _everything(note)
-    chosen = [_changed(_case(subject, decks, request.mount), edits) for subject in subjects]
-    if not any(isinstance(s, str) and is_blade_file(s) for s in subjects) and (decks or request.mount != Mount()):
+    unique = [s for k, s in enumerate(asked) if not isinstance(s, str) or s not in asked[:k]] or _everything(note)
+    chosen = [_changed(_read(subject, decks, request.mount), edits) for subject in unique]
+    if not any(isinstance(s, str) and is_blade_file(s) for s in unique) and (decks or request.mount != Mount()):
         raise CaseError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
         )
-    return chosen
+    return [part for case in chosen for part in (blades(case) if isinstance(case, Case) else [case])]
 
 
-def _case(
-    subject: str | Case | MechanismCase, decks: tuple[tuple[float, ...], bool] | None, mount: Mount
-) -> Case | MechanismCase:
-    """A case of blades or of a mechanism, by name or file; or the default case of a blade file."""
+def _read(subject: str | Case | Subject, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case | Subject:
+    """A case of blades or a mechanism, by name or file; or the default case of a blade file."""
     if not isinstance(subject, str):
         return subject
     if is_blade_file(subject):
         return _of_blade_file(subject, decks, mount)
     if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
-        return mechanism_case.case(library.mechanism(subject))
+        return mechanism.subject(library.mechanism(subject))
     return library.select(subject)
 
 
@@ -63,7 +62,7 @@ def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, moun
     return default_case(blade, at, rpm=rpm, source="; ".join(about), unused=source.unused)
 
 
-def _changed(case: Case | MechanismCase, edits: Sequence[Change]) -> Case | MechanismCase:
+def _changed(case: Case | Subject, edits: Sequence[Change]) -> Case | Subject:
     """The case with changed blade properties and without printed tables, which no longer apply."""
     if not edits:
         return case
@@ -80,9 +79,9 @@ def _changed(case: Case | MechanismCase, edits: Sequence[Change]) -> Case | Mech
     return replace(case, text=text, variants=variants)
 
 
-def _everything(note: Callable[[str], None]) -> tuple[Case | MechanismCase, ...]:
+def _everything(note: Callable[[str], None]) -> tuple[Case | Subject, ...]:
     """Every case and mechanism whose files are present."""
     present, absent = library.everything()
     for name, why in absent.items():
         note(f"{name}: not run: {why}")
-    return (*present.values(), *(mechanism_case.case(library.mechanism(name)) for name in library.mechanisms()))
+    return (*present.values(), *(mechanism.subject(library.mechanism(name)) for name in library.mechanisms()))

@@ -19,7 +19,7 @@ once (``Defaults``); the first is required. Speeds need not be among those of th
 
 import math
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -27,7 +27,6 @@ from ...core.participation import MIXED
 from ...references.protocol.interface import MOTIONS
 from ..input import files
 from ..input.errors import CaseError, nearest
-from ..input.schema import Variant
 from ..judge.uncertainty import Estimate, from_print
 
 SPEED = {"speed [rad/s]": 1.0, "speed [rpm]": math.pi / 30, "speed [gamma]": 1.0}
@@ -217,10 +216,15 @@ def _no_repeats(rows: Sequence[Given], path: Path, measured: bool) -> None:
         seen[key] = row.line
 
 
-def check(user_results: Sequence[UserResults], variants: Sequence[Variant], codes: Iterable[str]) -> None:
+def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[float]], codes: Iterable[str]) -> None:
     """Check that names are unused, and that the run has the blade and speed of every row.
 
     The speed of a measured row only has to be within the range of the run's speeds.
+
+    Args:
+        user_results: results of all files.
+        speeds: name of each blade of the run → its speeds, rad/s.
+        codes: names of the codes.
 
     Raises:
         CaseError: if not; one line, as for ``read``.
@@ -232,24 +236,25 @@ def check(user_results: Sequence[UserResults], variants: Sequence[Variant], code
         taken.add(one.name)
         for row in one.rows:
             where = f"{one.path}: line {row.line}"
-            names = [v.name for v in variants]
-            mine = [v for v in variants if v.name == (row.blade or v.name)]
-            if not mine:
-                raise CaseError(f"{where}: blade: {row.blade!r} is not in this run: {nearest(row.blade, names)}")
-            if len(mine) > 1:
-                raise CaseError(f"{where}: blade: not given, and the run has {len(mine)}: add a column, or choose one")
-            highest = float(mine[0].speeds.max())
+            if row.blade and row.blade not in speeds:
+                raise CaseError(f"{where}: blade: {row.blade!r} is not in this run: {nearest(row.blade, speeds)}")
+            if not row.blade and len(speeds) != 1:
+                raise CaseError(
+                    f"{where}: blade: not given, and the run has {len(speeds)}: add a column, or choose one"
+                )
+            blade = row.blade or next(iter(speeds))
+            highest = max(speeds[blade])
             if one.measured and row.omega <= highest + row.slack:
                 continue
             if one.measured:
                 raise CaseError(
-                    f"{where}: speed: {row.omega:.6g} rad/s is above the highest speed of {mine[0].name}, {highest:.6g} rad/s: "
+                    f"{where}: speed: {row.omega:.6g} rad/s is above the highest speed of {blade}, {highest:.6g} rad/s: "
                     "correct it, or add a speed to the case"
                 )
-            if not any(at(row, omega) for omega in mine[0].speeds.tolist()):
-                listed = ", ".join(f"{s:.6g}" for s in mine[0].speeds)
+            if not any(at(row, omega) for omega in speeds[blade]):
+                listed = ", ".join(f"{s:.6g}" for s in speeds[blade])
                 raise CaseError(
-                    f"{where}: speed: {row.omega:.6g} rad/s is not among the speeds of {mine[0].name} ({listed} rad/s): "
+                    f"{where}: speed: {row.omega:.6g} rad/s is not among the speeds of {blade} ({listed} rad/s): "
                     "add it to the case, or leave the line out"
                 )
 

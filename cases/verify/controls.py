@@ -11,13 +11,11 @@ import numpy as np
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import Modes
-from ...core.participation import families, numbered, participation
 from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Compare, Variant
-from ..judge.pairing import aligned, pair, weights
-from ..judge.spectrum import of_blade
-from ..solve.core_solver import COARSEST, qualifying
+from ..solve.changed import Changed, changed
+from ..solve.core_solver import COARSEST
 from .core_faults import CORE_FAULTS, Solve
 
 ELEMENTS = COARSEST
@@ -26,20 +24,6 @@ ELEMENTS = COARSEST
 SAME_MODE = 5e-2
 """Relative distance within which core's converged answer and this coarser one are the same mode of a family: the error
 of lumped mass is 2 %, and modes of a family are farther apart."""
-
-
-@dataclass(frozen=True)
-class Changed:
-    """Name and frequencies (rad/s) of one mode with and without a fault; ``wrong`` is None if no mode corresponds."""
-
-    name: str
-    right: float
-    wrong: float | None
-
-    @property
-    def change(self) -> float | None:
-        """Relative difference of ``wrong`` from ``right``."""
-        return None if self.wrong is None else self.wrong / self.right - 1.0
 
 
 @dataclass(frozen=True)
@@ -73,16 +57,3 @@ def _solved(solve: Solve, blade: Blade, omega: float, compare: Compare) -> Modes
             return solve(blade, omega, ELEMENTS, 2 * compare.modes + 2, ALL_EFFECTS)
     except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
-
-
-def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[Changed, ...]:
-    """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
-    weight = weights(blade)
-    right, wrong = aligned(right, weight), aligned(wrong, weight)
-    energies = participation(right, blade)
-    indices, names = qualifying(energies, compare), numbered(families(energies))
-    partners = [p.mode for p in pair(of_blade(right, weight), of_blade(wrong), indices)]
-    return tuple(
-        Changed(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
-        for k, p in zip(indices, partners, strict=True)
-    )

@@ -3,10 +3,9 @@
 For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
 """
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import asdict, dataclass, replace
-from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 from platform import python_version
@@ -18,19 +17,13 @@ from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Failure, Limits, raised
 from ...references.protocol.store import StoreError
 from ..input.errors import CaseError
-from ..input.schema import Case, Variant
 from ..judge.cells import Rows, failing
 from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
-from ..plan import mechanism_columns
 from ..plan.column import Column
-from ..plan.columns import columns
-from ..plan.mechanism_case import MechanismCase, Turning
 from ..plan.names import unique
-from ..plan.settings import settings
-from ..plan.user_columns import columns as added_columns
+from ..plan.subject import Subject, asked_about, speeds_of_blades
 from ..plan.user_results import UserResults, check
-from ..solve.reference import references
-from . import error_budget
+from ..solve import error_budget
 
 
 @dataclass(frozen=True)
@@ -56,20 +49,19 @@ class Progress:
 class _Task:
     """One task for one blade: core's references (no column), a column, or the error budget."""
 
-    variant: Variant | Turning
+    subject: Subject
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
-    modes: int
     column: Column | None = None
     error_budget: Callable[[], list[BudgetEntry]] | None = None
 
     @property
     def label(self) -> str:
-        return f"{self.variant.name} × {self.column.name if self.column else 'core'}"
+        return f"{self.subject.name} × {self.column.name if self.column else 'core'}"
 
 
 def run(
-    cases: Sequence[Case | MechanismCase],
+    subjects: Sequence[Subject],
     codes: Sequence[str | Description],
     executor: Executor,
     on_progress: Callable[[Progress], None] = lambda _: None,
@@ -80,10 +72,10 @@ def run(
     parts: bool = True,
     on_plan: Callable[[tuple[Planned, ...]], None] = lambda _: None,
 ) -> Run:
-    """Solve every blade of ``cases`` with every one of ``codes`` and judge the results.
+    """Solve every one of ``subjects`` with every one of ``codes`` and judge the results.
 
     Args:
-        cases: as read.
+        subjects: what is verified.
         codes: names or import paths, see ``references.protocol.registry``, or descriptions.
         executor: where tasks run: threads, processes, another machine's.
         on_progress: called when the run starts and whenever a task ends; an exception from it stops the run.
@@ -95,19 +87,13 @@ def run(
         on_plan: called with every column before the first task starts.
 
     Raises:
-        CaseError: if added results do not belong to these cases, or a name occurs twice.
+        CaseError: if added results do not belong to these subjects, or a name occurs twice.
         UnknownCodeError: if a code is unknown.
     """
-    blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
-    known = _known(codes, [v.blade for v in blades])
-    unique(cases, known, user_results)
-    check(user_results, blades, [c.name for c in known])
-    shown = {v.name: [replace(c, refused=c.refused[k : k + 1]) for c in known] for k, v in enumerate(blades)}
-    plans = [
-        task
-        for case in cases
-        for task in _tasks(case, known, shown, limits(case, seconds, memory, reuse), user_results)
-    ]
+    described = _described(codes, asked_about(subjects))
+    unique(subjects, described, user_results)
+    check(user_results, speeds_of_blades(subjects), [c.name for c in described])
+    plans = _tasks(subjects, described, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results)
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
@@ -121,16 +107,16 @@ def run(
         while pending:
             for future in wait(pending, return_when=FIRST_COMPLETED).done:
                 task, new = pending.pop(future), ([], [])
-                speeds, answer = task.variant.speeds.tolist(), _answer(future)
+                points, answer = task.subject.points, _answer(future)
                 if isinstance(answer, Failure):
                     for column in [task.column] if task.column else task.columns:
-                        lost, _ = rows[task.variant.name, column.name] = failing(column.head, answer, speeds)
+                        lost, _ = rows[task.subject.name, column.name] = failing(column.head, answer, points)
                         new = (new[0] + lost, [])
                 elif task.column:
-                    rows[task.variant.name, task.column.name] = new = answer
+                    rows[task.subject.name, task.column.name] = new = answer
                 else:
                     for column in task.columns:
-                        pending[executor.submit(column, speeds, answer[column.effects])] = replace(task, column=column)
+                        pending[executor.submit(column, points, answer[column.effects])] = replace(task, column=column)
                 if parts and not split and all(t.column for t in pending.values()):
                     # after all columns: they are short, so that no worker is idle at the end
                     split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
@@ -140,15 +126,15 @@ def run(
     finally:
         for future in [*pending, *(future for _, future in split)]:
             future.cancel()
-    ordered = [rows[task.variant.name, column.name] for task in plans for column in task.columns]
+    ordered = [rows[task.subject.name, column.name] for task in plans for column in task.columns]
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions(known, user_results),
-        settings=tuple(setting for case in cases for setting in settings(case)),
+        versions=versions(described, user_results),
+        settings=tuple(subject.setting() for subject in subjects),
         error_budget=tuple(made_of),
         origins=tuple(
-            Origin(task.variant.name, column.head.code, **asdict(column.origin))
+            Origin(task.subject.name, column.head.code, **asdict(column.origin))
             for task in plans
             for column in task.columns
             if column.origin
@@ -158,11 +144,11 @@ def run(
 
 
 def _planned(task: _Task, column: Column) -> Planned:
-    speeds = {"everywhere": len(task.variant.speeds), "highest speed": 1, "somewhere": 0}[column.due]
-    return Planned(task.variant.name, column.head.code, speeds, task.modes if speeds else 0)
+    points = {"everywhere": len(task.subject.points), "highest speed": 1, "somewhere": 0}[column.due]
+    return Planned(task.subject.name, column.head.code, points, task.subject.cells if points else 0)
 
 
-def _known(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[Description]:
+def _described(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[Description]:
     """Descriptions of the codes, which have been asked about every blade of the run."""
     ready = {
         c.asked: c
@@ -186,48 +172,36 @@ def _answer(future: Future[Any]) -> Any:
         return Failure("internal", f"internal error of southwell, not of the code: {raised(error)}")
 
 
-def limits(case: Case | MechanismCase, seconds: float | None, memory: int, reuse: bool = False) -> Limits:
-    """Limits of one solution by a foreign code: those given, or the time limit of the case."""
-    compare = case.described.text.compare if isinstance(case, MechanismCase) else case.text.compare
-    return Limits(seconds or (compare.time_limit if compare else Limits.seconds), memory, reuse)
-
-
 def _tasks(
-    case: Case | MechanismCase,
+    subjects: Sequence[Subject],
     codes: Sequence[Description],
-    shown: Mapping[str, Sequence[Description]],
-    limits: Limits,
+    limits: Callable[[Subject], Limits],
     user_results: Sequence[UserResults],
 ) -> list[_Task]:
-    """Tasks for each blade of a case, or for its mechanism."""
-    if isinstance(case, MechanismCase):
-        (turning,) = case.variants
-        made = dated(mechanism_columns.columns(case, codes, limits), codes)
-        return [_Task(turning, made, partial(mechanism_columns.references, turning), turning.count)]
-    out = []
-    for v in case.variants:
-        made = dated(columns(case, v, shown[v.name], limits), codes)
-        made += tuple(added_columns(v, user_results, case.text.compare))
-        kept = [column.effects for column in made]
-        question = partial(references, v.blade, v.speeds.tolist(), case.text.compare, kept)
-        out.append(_Task(v, made, question, case.text.compare.modes, error_budget=partial(error_budget.solve, case, v)))
+    """The task of each subject, with its columns. A code's answers on whether it accepts a blade are divided among them."""
+    out, blades = [], 0
+    for subject in subjects:
+        asked = [replace(code, refused=code.refused[blades : blades + 1]) for code in codes]
+        blades += subject.blade is not None
+        columns = dated(subject.columns(asked, limits(subject), user_results), codes)
+        out.append(_Task(subject, columns, subject.references(columns), error_budget=subject.error_budget()))
     return out
 
 
-def dated(made: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
+def dated(columns: Sequence[Column], codes: Sequence[Description]) -> tuple[Column, ...]:
     """The columns with the digests of the sources of their codes."""
-    found = {c.name: (sources.adapter(c.asked), sources.bundled(c.asked)) for c in codes if not c.failure}
-    known = [(column, *found.get(column.head.code, ("", True))) for column in made]
-    return tuple(replace(column, adapter=digest, bundled=bundled) for column, digest, bundled in known)
+    origins = {c.name: (sources.adapter(c.asked), sources.bundled(c.asked)) for c in codes if not c.failure}
+    of_columns = [(column, *origins.get(column.head.code, ("", True))) for column in columns]
+    return tuple(replace(column, adapter=digest, bundled=bundled) for column, digest, bundled in of_columns)
 
 
 def _parts(task: _Task, parts: list[BudgetEntry], rows: dict[tuple[str, str], Rows]) -> list[BudgetEntry]:
     """The error budget of core, with the uncertainties of the compared numbers."""
-    return parts + error_budget.uncertain(task.variant.name, parts, _cells(task, rows))
+    return parts + error_budget.uncertain(task.subject.name, parts, _cells(task, rows))
 
 
 def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
-    return [cell for column in task.columns for cell in rows[task.variant.name, column.name][0]]
+    return [cell for column in task.columns for cell in rows[task.subject.name, column.name][0]]
 
 
 def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:

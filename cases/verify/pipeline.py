@@ -14,14 +14,14 @@ from ...references.protocol import launch, registry, store
 from ...references.protocol.description import Description, describe
 from ...references.protocol.store import Store
 from ..faults import table
-from ..input.schema import Case
 from ..input.writing import writable
 from ..judge import results
 from ..judge.results import RESULTS, Control, Planned, Run, Setting
-from ..plan import measurements, names, subjects, user_results
-from ..plan.mechanism_case import MechanismCase
+from ..plan import measurements, names, user_results
 from ..plan.request import Execution, Request, command_line
-from ..plan.settings import NOT_USED, settings
+from ..plan.settings import NOT_USED
+from ..plan.subject import Subject, asked_about, speeds_of_blades
+from ..plan.subjects import subjects
 from ..plan.user_results import UserResults
 from ..run.executors import Serial, executor
 from ..run.software import Software
@@ -63,14 +63,14 @@ class Plan:
     """What a request stands for.
 
     Attributes:
-        cases: as read.
+        subjects: what is verified.
         codes: descriptions of the codes, which have been asked about every blade.
         added: results of other programs and measurements.
         about: the run without rows.
         faults: names of the seeded faults.
     """
 
-    cases: tuple[Case | MechanismCase, ...]
+    subjects: tuple[Subject, ...]
     codes: tuple[Description, ...]
     added: tuple[UserResults, ...]
     about: Run
@@ -109,25 +109,24 @@ def planned(request: Request, observer: Observer) -> Plan:
     Raises:
         CaseError, UnknownCodeError: as ``verify``.
     """
-    cases = subjects.cases(request, observer.note)
-    blades = [v for case in cases if isinstance(case, Case) for v in case.variants]
+    chosen = subjects(request, observer.note)
     asked = list(dict.fromkeys(request.codes)) if request.codes is not None else list(registry.names())
-    codes = describe(asked, [v.blade for v in blades])
+    codes = describe(asked, asked_about(chosen))
     defaults = measurements.defaults(request.data_uncertainty, request.input_uncertainty)
     added = [measurements.user_results(text, defaults) for text in request.add]
     measurements.check(added, request.data_uncertainty, request.input_uncertainty)
-    names.unique(cases, codes, added)
-    user_results.check(added, blades, [c.name for c in codes])
+    names.unique(chosen, codes, added)
+    user_results.check(added, speeds_of_blades(chosen), [c.name for c in codes])
     about = Run(
         cells=(),
         versions=matrix.versions(codes, added),
         command=command_line(request),
-        settings=tuple(_required(s, request) for case in cases for s in settings(case)),
+        settings=tuple(_required(subject.setting(), request) for subject in chosen),
     )
     for setting in about.settings:
         if NOT_USED in setting.facts:
             observer.note(f"{setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}")
-    return Plan(tuple(cases), tuple(codes), tuple(added), about, table.chosen(request.faults))
+    return Plan(tuple(chosen), tuple(codes), tuple(added), about, table.chosen(request.faults))
 
 
 def _required(setting: Setting, request: Request) -> Setting:
@@ -191,7 +190,7 @@ def _solved(
 
     with observer.watching() as progress:
         run = matrix.run(
-            plan.cases,
+            plan.subjects,
             plan.codes,
             tasks,
             progress,

@@ -24,6 +24,7 @@ from ...cases.input.default_case import default_case
 from ...cases.input.errors import CaseError
 from ...cases.input.writing import writable
 from ...cases.plan import measurements
+from ...cases.plan.blade import blades
 from ...cases.run.executors import Processes
 from ...cases.verify import matrix
 from ...core.blade import Blade
@@ -207,7 +208,7 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
     pool, watch = Processes(os.cpu_count() or 1), Watch()
     try:
         with watch:
-            run = matrix.run([case], registry.names(), pool, watch.show, parts=False)
+            run = matrix.run(blades(case), registry.names(), pool, watch.show, parts=False)
     finally:
         pool.stop()
     return confirmation_table.sheet(diagram, confirmation.confirmations(diagram, run), units)

@@ -8,7 +8,7 @@ from cyclopts import App
 
 from ...cases.input import library
 from ...cases.input.errors import nearest
-from ...cases.plan import mechanism_case
+from ...cases.plan import mechanism
 from ...cases.plan.settings import settings
 from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
@@ -34,7 +34,7 @@ def cases() -> int:
         blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
         rows.append((name, known.text.title, blades, first.facts["speeds"]))
     for name in library.mechanisms():
-        about = mechanism_case.setting(mechanism_case.case(library.mechanism(name)))
+        about = mechanism.subject(library.mechanism(name)).setting()
         rows.append((name, about.title, "mechanism", about.facts["speeds"]))
     _print(("case", "what", "blades", "speeds"), rows)
     return PASSED

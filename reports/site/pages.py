@@ -4,18 +4,18 @@ The text is taken from case files, adapters, docstrings and options.
 """
 
 import re
+from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
 from pkgutil import walk_packages
 
 from ...cases.input import library
-from ...cases.input.schema import Case
 from ...cases.judge import results
 from ...cases.judge.results import Run, Setting
-from ...cases.plan import mechanism_case
-from ...cases.plan.mechanism_case import MechanismCase
-from ...cases.plan.settings import settings
+from ...cases.plan import mechanism
+from ...cases.plan.blade import blades
+from ...cases.plan.subject import Subject
 from ...references.protocol import registry as registry
 from ..cli import app, arguments
 from ..shared.markdown import plain, table
@@ -67,29 +67,31 @@ def report(folder: Path) -> Pages:
 
 def cases() -> Pages:
     """One page per case that comes with the package, and an index."""
-    found, absent = library.everything()
-    known = [*found.values(), *(mechanism_case.case(library.mechanism(name)) for name in library.mechanisms())]
-    rows = [_row(case) for case in known]
+    present, absent = library.everything()
+    subjects: dict[str, Sequence[Subject]] = {case.name: blades(case) for case in present.values()}
+    subjects |= {name: [mechanism.subject(library.mechanism(name))] for name in library.mechanisms()}
+    rows = [_row(*each) for each in subjects.items()]
     rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in absent.items()]
     head = "# Cases\n\nWhat `southwell verify` runs, from the files in `cases/data/`.\n\n"
-    return {"cases/index.md": f"{head}{table(rows)}\n"} | {f"cases/{c.name}.md": _case(c) for c in known}
+    pages = {f"cases/{name}.md": _case(name, own) for name, own in subjects.items()}
+    return {"cases/index.md": f"{head}{table(rows)}\n"} | pages
 
 
-def _row(case: Case | MechanismCase) -> dict[str, str]:
-    first, *_ = facts = settings(case)
-    what = f"[{plain(first.title)}]({case.name}.md)"
-    blades = "a mechanism" if isinstance(case, MechanismCase) else str(len(facts))
-    return {"case": f"`{case.name}`", "what": what, "blades": blades, "speeds": plain(first.facts["speeds"])}
+def _row(name: str, subjects: Sequence[Subject]) -> dict[str, str]:
+    first = subjects[0].setting()
+    what = f"[{plain(first.title)}]({name}.md)"
+    count = "a mechanism" if subjects[0].blade is None else str(len(subjects))
+    return {"case": f"`{name}`", "what": what, "blades": count, "speeds": plain(first.facts["speeds"])}
 
 
-def _case(case: Case | MechanismCase) -> str:
-    first, *_ = facts = settings(case)
-    path = f"mechanisms/{case.name}.toml" if isinstance(case, MechanismCase) else f"{case.name}.toml"
+def _case(name: str, subjects: Sequence[Subject]) -> str:
+    first, *_ = facts = [subject.setting() for subject in subjects]
+    path = f"mechanisms/{name}.toml" if subjects[0].blade is None else f"{name}.toml"
     parts = [
         f"# {plain(first.title)}",
         plain(first.description),
         f"*Source:* {plain(first.source)}.",
-        f"```console\nsouthwell verify {case.name}\n```",
+        f"```console\nsouthwell verify {name}\n```",
         f"File: `cases/data/{path}`.",
         *(_facts(s) for s in facts),
     ]

@@ -11,7 +11,7 @@ from southwell.cases.input import library
 from southwell.cases.input.schema import Case, Variant
 from southwell.cases.judge.results import Run
 from southwell.cases.judge.witnesses import groups, witnesses
-from southwell.cases.plan.columns import PAPER, columns
+from southwell.cases.plan.blade_columns import PAPER, columns
 from southwell.cases.solve import paper
 from southwell.cases.solve.reference import references
 from southwell.core import multibody as mb

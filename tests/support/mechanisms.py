@@ -4,7 +4,8 @@ from collections.abc import Callable
 
 from southwell import multibody as mb
 from southwell.cases.input import library
-from southwell.cases.plan import mechanism_case
+from southwell.cases.plan import mechanism
+from southwell.core.mechanism.description import at_rate
 from southwell.tests.support import five_bar, four_bar
 from southwell.tests.support import linkages as loops
 from southwell.tests.support.closed_forms import linkages, pendulums
@@ -14,8 +15,8 @@ Case = tuple[mb.Mechanism, dict[str, float]]
 
 def of_case(name: str) -> Case:
     described = library.mechanism(name)
-    (turning,) = mechanism_case.case(described).variants
-    return turning.at(float(turning.speeds[-1])), described.guess
+    highest = mechanism.subject(described).points[-1]
+    return at_rate(described.mechanism, described.text.rotor, highest), described.guess
 
 
 def assembled() -> dict[str, float]:

@@ -8,8 +8,8 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError, FilesMissingError
-from southwell.cases.plan import subjects
 from southwell.cases.plan.request import Request
+from southwell.cases.plan.subjects import subjects
 from southwell.core.blade import coupled, straight
 from southwell.reports.cli import app as cli
 
@@ -54,7 +54,7 @@ def test_asked_for_by_name_it_is_bad_input(monkeypatch: pytest.MonkeyPatch, caps
 def test_among_all_it_is_said_and_left_out(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     monkeypatch.delenv(FILES, raising=False)
     notes: list[str] = []
-    chosen = {case.name for case in subjects.cases(Request(), notes.append)}
+    chosen = {subject.name for subject in subjects(Request(), notes.append)}
     assert not set(NAMES) & chosen
     assert "park-cantilever" in chosen
     assert [line.partition(": not run: ")[0] for line in notes] == list(NAMES)

@@ -18,6 +18,7 @@ from southwell.cases.judge.reference import Reference
 from southwell.cases.judge.results import Run
 from southwell.cases.judge.witnesses import groups, witnesses
 from southwell.cases.plan import user_results
+from southwell.cases.plan.blade import blades
 from southwell.cases.plan.user_results import Defaults, UserResults
 from southwell.cases.solve.reference import references
 from southwell.cases.verify import matrix
@@ -54,7 +55,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> Run:
     text = f"{HEAD}10, {1.01 * EDGEWISE:.6f}, edgewise 1, 2\n10, {0.9 * FLAPWISE:.6f}, flapwise 1, 2\n10, 900, axial 1, 2\n"
     files = [read(folder, text), read(folder, f"{HEAD}10, 71.1, flapwise 2, 2\n", name="second")]
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([park((0.0, 12.0))], [], executor, user_results=files, parts=False)
+        return matrix.run(blades(park((0.0, 12.0))), [], executor, user_results=files, parts=False)
 
 
 def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(compared: Run) -> None:

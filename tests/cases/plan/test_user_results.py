@@ -19,6 +19,8 @@ from southwell.cases.judge.spectrum import of_blade
 from southwell.cases.judge.uncertainty import Estimate
 from southwell.cases.judge.witnesses import witnesses
 from southwell.cases.plan import user_columns, user_results
+from southwell.cases.plan.blade import blades
+from southwell.cases.plan.subject import speeds_of_blades
 from southwell.cases.verify import matrix
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
@@ -44,7 +46,7 @@ def park(speeds: tuple[float, ...] = (0.0, 10.0)):
 
 def run(*files: user_results.UserResults) -> Run:
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([park()], ["yoo-shin"], executor, user_results=files)
+        return matrix.run(blades(park()), ["yoo-shin"], executor, user_results=files)
 
 
 def of(run: Run, name: str = "rig") -> list[Cell]:
@@ -225,7 +227,7 @@ def test_names_are_needed_and_their_own(
 def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
     one = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n")
     with pytest.raises(CaseError, match="another file has this name"):
-        user_results.check([one, one], park().variants, ["yoo-shin"])
+        user_results.check([one, one], speeds_of_blades(blades(park())), ["yoo-shin"])
 
 
 def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Reference:

@@ -20,6 +20,7 @@ from southwell.cases.judge.same import rounding
 from southwell.cases.judge.spectrum import of_blade, of_blades
 from southwell.cases.judge.verdict import bracketed, discretised, judge
 from southwell.cases.judge.witnesses import groups, witnesses
+from southwell.cases.plan.blade import blades
 from southwell.cases.solve import core_solver
 from southwell.cases.solve.copies import copied
 from southwell.cases.solve.reference import references
@@ -56,7 +57,7 @@ def run() -> Run:
     case = library.load(PARK)
     one = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([one], [f"southwell.tests.support.fooling:{c}" for c in FOOLING], executor, parts=False)
+        return matrix.run(blades(one), [f"southwell.tests.support.fooling:{c}" for c in FOOLING], executor, parts=False)
 
 
 def of(code: str) -> list[Cell]:
@@ -135,7 +136,7 @@ def test_a_wide_target_is_coarse_and_no_evidence() -> None:
         variants=(replace(case.variants[0], speeds=np.array([10.0])),),
     )
     with ThreadPoolExecutor(1) as executor:
-        found = matrix.run([wide], ["southwell.tests.support.fooling:FAR"], executor, parts=False)
+        found = matrix.run(blades(wide), ["southwell.tests.support.fooling:FAR"], executor, parts=False)
     cells = [c for c in found.cells if c.code == "far"]
     assert {c.verdict for c in cells} == {"coarse"}
     assert all(abs(c.difference or 0.0) > 0.3 for c in cells)

@@ -10,7 +10,8 @@ import pytest
 
 from southwell.cases.input.schema import Case, read
 from southwell.cases.judge.results import Cell, Run
-from southwell.cases.plan import columns
+from southwell.cases.plan import blade_columns as columns
+from southwell.cases.plan.blade import blades
 from southwell.cases.verify import matrix
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
@@ -70,7 +71,7 @@ def written(key: str, folder: Path) -> str:
 
 def run(case: Case, *codes: str) -> Run:
     with ThreadPoolExecutor(2) as executor:
-        return matrix.run([case], codes, executor, parts=False)
+        return matrix.run(blades(case), codes, executor, parts=False)
 
 
 def of(run: Run, code: str) -> list[Cell]:

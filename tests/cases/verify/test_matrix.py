@@ -10,7 +10,8 @@ import pytest
 from southwell.cases.input.schema import Case, read
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
-from southwell.cases.plan.columns import PAPER
+from southwell.cases.plan.blade import blades
+from southwell.cases.plan.blade_columns import PAPER
 from southwell.cases.verify import matrix
 from southwell.cases.verify.matrix import Progress
 from southwell.reports.shared import summary
@@ -55,7 +56,7 @@ def case(tmp_path: Path):
 
 def solve(case: Case, *codes: str, timeout: float = 60.0) -> Run:
     with ThreadPoolExecutor(2) as executor:
-        return matrix.run([case], codes, executor, seconds=timeout)
+        return matrix.run(blades(case), codes, executor, seconds=timeout)
 
 
 def of(run: Run, code: str) -> list[Cell]:
@@ -181,7 +182,7 @@ def test_what_was_solved_before_a_failure_still_counts(case) -> None:
 def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
     seen: list[Progress] = []
     with ThreadPoolExecutor(1) as executor:
-        run = matrix.run([case()], ["analytic:GOOD", "analytic:UNABLE"], executor, seen.append)
+        run = matrix.run(blades(case()), ["analytic:GOOD", "analytic:UNABLE"], executor, seen.append)
     assert [p.done for p in seen] == [0, 1, 2, 3, 4, 5]
     assert {p.total for p in seen} == {5}
     assert seen[0].running == ("rest × core",)
@@ -191,7 +192,7 @@ def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
 @pytest.mark.slow
 def test_processes_and_threads_agree(case) -> None:
     with ProcessPoolExecutor(1) as executor:
-        far = matrix.run([case()], ["analytic:GOOD"], executor)
+        far = matrix.run(blades(case()), ["analytic:GOOD"], executor)
     near = solve(case(), "analytic:GOOD")
     assert [(c.code, c.mode, c.frequency, c.verdict) for c in far.cells] == [
         (c.code, c.mode, c.frequency, c.verdict) for c in near.cells
@@ -202,7 +203,7 @@ def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     """Stretching resonates with the rotation where γ = α π/2: past it nothing holds the beam together."""
     fast, other = case("[0, 1600]"), case("[0]", "rest", "beside")
     with ThreadPoolExecutor(2) as executor:
-        run = matrix.run([fast, other], ["analytic:GOOD", "analytic:ABSENT"], executor)
+        run = matrix.run(blades(fast, other), ["analytic:GOOD", "analytic:ABSENT"], executor)
     bad = [c for c in run.cells if c.omega == 1600]
     assert {(c.code, c.verdict, c.mode) for c in bad} == {
         (PAPER, "fail", 0),

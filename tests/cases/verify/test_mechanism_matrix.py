@@ -13,8 +13,8 @@ from southwell.cases.input import library, mechanisms
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge import witnesses
 from southwell.cases.judge.cells import Head
-from southwell.cases.plan import mechanism_case, mechanism_columns
-from southwell.cases.plan.columns import columns as blade_columns
+from southwell.cases.plan import mechanism, mechanism_columns
+from southwell.cases.plan.blade_columns import columns as blade_columns
 from southwell.cases.plan.mechanism_columns import cells
 from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
@@ -33,12 +33,11 @@ TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
 
 
 def rows(name: str, column: str) -> list:
-    case = mechanism_case.case(library.mechanism(name))
-    known = describe(tuple(MECHANISM_CODES))
-    (turning,) = case.variants
-    core = mechanism_columns.references(turning)[ALL_EFFECTS]
-    (one,) = (c for c in mechanism_columns.columns(case, known, Limits(60.0)) if c.name == column)
-    return one(turning.speeds.tolist(), core)[0]
+    subject = mechanism.subject(library.mechanism(name))
+    columns = subject.columns(describe(tuple(MECHANISM_CODES)), Limits(60.0), ())
+    core = subject.references(columns)()[ALL_EFFECTS]
+    (chosen,) = (c for c in columns if c.name == column)
+    return chosen(subject.points, core)[0]
 
 
 @pytest.mark.slow
@@ -59,8 +58,7 @@ def test_every_code_at_every_speed(name: str, column: str) -> None:
 
 
 def reference() -> mechanism_columns.Reference:
-    (turning,) = mechanism_case.case(library.mechanism("hinged-blade")).variants
-    core = mechanism_columns.references(turning)[ALL_EFFECTS][2]
+    core = mechanism.subject(library.mechanism("hinged-blade")).references(())()[ALL_EFFECTS][2]
     assert isinstance(core, mechanism_columns.Reference)
     return core
 
@@ -140,10 +138,10 @@ def test_no_answer_is_a_cell_that_says_so(kind, verdict: str) -> None:
 
 
 def test_codes_for_blades_have_no_column_unless_there_is_no_other() -> None:
-    case = mechanism_case.case(library.mechanism("hinged-blade"))
+    subject = mechanism.subject(library.mechanism("hinged-blade"))
     both = describe(("southwell-equation", "exudyn-loops"))
-    assert [c.name for c in mechanism_columns.columns(case, both, Limits(1.0))] == ["exudyn-loops", "closed form"]
-    alone = mechanism_columns.columns(case, both[:1], Limits(1.0))
+    assert [c.name for c in subject.columns(both, Limits(1.0), ())] == ["exudyn-loops", "closed form"]
+    alone = subject.columns(both[:1], Limits(1.0), ())
     (cell,) = alone[0]([10.0], [reference()])[0]
     assert (cell.verdict, cell.reason) == ("not applicable", "the code takes blades, not mechanisms")
 
@@ -237,20 +235,20 @@ BAD = [
 def test_what_makes_no_case_is_told(tmp_path: Path, old: str, new: str, match: str) -> None:
     path = write(tmp_path, "hinged-blade", (old, new))
     with pytest.raises(CaseError, match=match):
-        mechanism_case.case(mechanisms.read(path))
+        mechanism.subject(mechanisms.read(path))
 
 
 def test_more_modes_than_a_mechanism_has_are_told(tmp_path: Path) -> None:
     path = write(tmp_path, "hinged-blade", ("modes = 2", "modes = 3"))
-    core = mechanism_columns.references(mechanism_case.case(mechanisms.read(path)).variants[0])
+    core = mechanism.subject(mechanisms.read(path)).references(())()
     failure = Failure("no reference", "compare.modes: 3: the mechanism has 2 modes: reduce it")
     assert core[ALL_EFFECTS] == [failure] * 4
 
 
 def test_a_code_that_is_not_installed_is_not_run_where_core_has_no_reference_either() -> None:
-    case = mechanism_case.case(library.mechanism("hinged-blade"))
+    subject = mechanism.subject(library.mechanism("hinged-blade"))
     absent = Description("absent", "absent", mechanisms=True, blades=False, hint="pip install absent")
-    column, *_ = mechanism_columns.columns(case, [absent], Limits())
+    column, *_ = subject.columns([absent], Limits(), ())
     (cell,) = column([10.0], [Failure("no reference", "no steady state")])[0]
     assert (cell.verdict, cell.reason) == ("not run", "not installed: pip install absent")
 
@@ -299,8 +297,8 @@ def test_formulae_of_limiting_blades() -> None:
 def test_a_mechanism_is_confirmed_by_independent_groups() -> None:
     """Exudyn is given core's spanning tree, and is no group; Pinocchio reads the mechanism itself."""
     for name in library.mechanisms():
-        case = mechanism_case.case(library.mechanism(name))
-        run = matrix.run([case], describe(tuple(MECHANISM_CODES)), seeding.Serial(), parts=False)
+        subject = mechanism.subject(library.mechanism(name))
+        run = matrix.run([subject], describe(tuple(MECHANISM_CODES)), seeding.Serial(), parts=False)
         found = {w.name: w.kind for w in witnesses.witnesses(run, name)}
         assert found["exudyn-loops"] == "core's model"
         if any(not c.version for c in run.cells):

@@ -29,8 +29,8 @@ from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Cell
-from ..solve.published_tables import about
-from .controls import changed
+from .changed import changed
+from .published_tables import about
 
 ELEMENTS = 50
 """Number of elements of the compared discretisations if the source gives none: the paper's."""

@@ -12,7 +12,9 @@ from scipy.integrate import trapezoid
 from southwell.cases.input import library
 from southwell.cases.judge import results
 from southwell.cases.judge.results import BudgetEntry, Run
-from southwell.cases.verify import error_budget, matrix
+from southwell.cases.plan.blade import blades
+from southwell.cases.solve import error_budget
+from southwell.cases.verify import matrix
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import Effects
 from southwell.core.element.discretize import Mass
@@ -136,7 +138,7 @@ def run() -> Run:
     case = library.load(CASE)
     one = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run([one], ["yoo-shin", "exact-beam"], executor)
+        return matrix.run(blades(one), ["yoo-shin", "exact-beam"], executor)
 
 
 @pytest.mark.slow

@@ -1,0 +1,84 @@
+"""A blade of a case as a subject."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+from ...core.blade import Blade
+from ...references.protocol.description import Description
+from ...references.protocol.process import Limits
+from ..input.schema import Case, Variant
+from ..judge.results import BudgetEntry, Setting
+from ..solve import error_budget
+from ..solve.reference import References, references
+from . import user_columns
+from .blade_columns import columns
+from .column import Column
+from .settings import setting
+from .user_results import UserResults
+
+
+@dataclass(frozen=True)
+class BladeSubject:
+    """One blade of a case; see ``Subject``."""
+
+    case: Case
+    variant: Variant
+
+    @property
+    def name(self) -> str:
+        """See ``Subject``."""
+        return self.variant.name
+
+    @property
+    def path(self) -> str:
+        """See ``Subject``."""
+        return self.case.path
+
+    @property
+    def points(self) -> tuple[float, ...]:
+        """See ``Subject``."""
+        return tuple(self.variant.speeds.tolist())
+
+    @property
+    def cells(self) -> int:
+        """See ``Subject``."""
+        return self.case.text.compare.modes
+
+    @property
+    def time_limit(self) -> float:
+        """See ``Subject``."""
+        return self.case.text.compare.time_limit
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """See ``Subject``."""
+        return self.case.text.compare.tables
+
+    @property
+    def blade(self) -> Blade:
+        """See ``Subject``."""
+        return self.variant.blade
+
+    def setting(self) -> Setting:
+        """See ``Subject``."""
+        return setting(self.case, self.variant)
+
+    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+        """See ``Subject``."""
+        compare = self.case.text.compare
+        return columns(self.case, self.variant, codes, limits) + user_columns.columns(self.variant, added, compare)
+
+    def references(self, columns: Sequence[Column]) -> Callable[[], References]:
+        """See ``Subject``."""
+        kept = [column.effects for column in columns]
+        return partial(references, self.variant.blade, list(self.points), self.case.text.compare, kept)
+
+    def error_budget(self) -> Callable[[], list[BudgetEntry]]:
+        """See ``Subject``."""
+        return partial(error_budget.solve, self.case, self.variant)
+
+
+def blades(*cases: Case) -> list[BladeSubject]:
+    """The blades of cases, each a subject."""
+    return [BladeSubject(case, variant) for case in cases for variant in case.variants]

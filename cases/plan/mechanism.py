@@ -1,0 +1,129 @@
+"""A mechanism as a subject: solved at several rotor speeds by every code that accepts mechanisms, compared with core."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+from msgspec import UNSET
+
+from ...core import multibody as mb
+from ...core.mechanism.description import at_rate
+from ...references.protocol.description import Description
+from ...references.protocol.process import Limits
+from ...references.theories import blade_formulae
+from ..input.errors import CaseError, nearest
+from ..input.mechanism_schema import Compare
+from ..input.mechanisms import Described
+from ..input.schema import rad_s
+from ..judge.results import Setting
+from . import mechanism_columns
+from .column import Column
+from .user_results import UserResults
+
+
+@dataclass(frozen=True)
+class MechanismSubject:
+    """A mechanism with its speeds; see ``Subject``.
+
+    Attributes:
+        described: the mechanism as read.
+        compare: how closely codes must agree with core.
+        points: rotor speeds, rad/s, ascending.
+    """
+
+    described: Described
+    compare: Compare
+    points: tuple[float, ...]
+
+    @property
+    def name(self) -> str:
+        """See ``Subject``."""
+        return self.described.text.name
+
+    @property
+    def path(self) -> str:
+        """See ``Subject``."""
+        return self.described.path
+
+    @property
+    def cells(self) -> int:
+        """See ``Subject``."""
+        return self.compare.modes
+
+    @property
+    def time_limit(self) -> float:
+        """See ``Subject``."""
+        return self.compare.time_limit
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """See ``Subject``."""
+        return ()
+
+    @property
+    def blade(self) -> None:
+        """See ``Subject``."""
+        return None
+
+    def setting(self) -> Setting:
+        """See ``Subject``."""
+        text, compare = self.described.text, self.compare
+        rpm = text.speeds is not None and text.speeds.rpm is not UNSET
+        speeds = np.array(self.points) * (30 / np.pi if rpm else 1.0)
+        cut = self.described.solve(1).linear.tree.weld_names
+        facts = {
+            "bodies": f"{len(text.bodies)}",
+            "joints": f"{len(text.joints)}",
+            "joints that close loops": ", ".join(cut) or "none",
+            "speeds": ", ".join(f"{v:.6g}" for v in speeds) + (" rpm" if rpm else " rad/s"),
+            "modes compared": f"the lowest {compare.modes}, and their damping ratios",
+            "target": f"{compare.target:g}",
+        }
+        return Setting(
+            case=self.name,
+            title=text.title,
+            description=" ".join(text.description.split()),
+            source=text.source,
+            unit="rpm" if rpm else "rad_s",
+            facts=facts,
+            groups=compare.groups,
+            lacking=compare.lacking,
+            target=compare.target,
+        )
+
+    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+        """Results of other programs are for blades and add no column."""
+        return mechanism_columns.columns(self.described, self.compare, codes, limits)
+
+    def references(self, columns: Sequence[Column]) -> Callable[[], mechanism_columns.References]:
+        """See ``Subject``."""
+        return partial(mechanism_columns.references, self.described, self.points, self.compare.modes)
+
+    def error_budget(self) -> None:
+        """See ``Subject``."""
+        return None
+
+
+def subject(described: Described) -> MechanismSubject:
+    """The subject of a mechanism's file that specifies its speeds and the target of the comparison.
+
+    Raises:
+        CaseError: if it does not specify them.
+    """
+    text, path = described.text, described.path
+    if text.speeds is None or text.compare is None:
+        missing = "speeds" if text.speeds is None else "compare"
+        raise CaseError(f"{path}: {missing}: missing: a mechanism needs [speeds] and [compare] to be a case; add it")
+    if (text.compare.groups == 0) != bool(text.compare.lacking):
+        raise CaseError(
+            f"{path}: compare.groups: give groups = 0 and compare.lacking, the reason, together, or neither"
+        )
+    try:
+        at_rate(described.mechanism, text.rotor, 0.0)
+    except mb.MechanismError as error:
+        raise CaseError(f"{path}: rotor: {error}") from error
+    if text.closed_form and text.closed_form.formula not in blade_formulae.FORMULAE:
+        advice = nearest(text.closed_form.formula, blade_formulae.FORMULAE)
+        raise CaseError(f"{path}: closed_form.formula: {text.closed_form.formula!r}: no such formula: {advice}")
+    return MechanismSubject(described, text.compare, tuple(rad_s(text.speeds, path).tolist()))

@@ -1,0 +1,86 @@
+"""What is verified: a subject says where it is asked, how its answers are compared, and who answers.
+
+A blade of a case and a mechanism are subjects. The run knows no more of them than this page: it solves the references of every
+subject, then its columns.
+"""
+
+from collections.abc import Callable, Collection, Sequence
+from typing import Any, Protocol
+
+from ...core.blade import Blade
+from ...references.protocol.description import Description
+from ...references.protocol.process import Limits
+from ..judge.results import BudgetEntry, Setting
+from .column import Column
+from .user_results import UserResults
+
+
+class Subject(Protocol):
+    """One subject of a run. What its methods return can be pickled, because it is executed in other processes."""
+
+    @property
+    def name(self) -> str:
+        """Name in the results: that of the case, followed by a slash and the blade's if the case has several."""
+        ...
+
+    @property
+    def path(self) -> str:
+        """Its file, for messages."""
+        ...
+
+    @property
+    def points(self) -> tuple[float, ...]:
+        """Where it is asked: rotor speeds, rad/s, ascending."""
+        ...
+
+    @property
+    def cells(self) -> int:
+        """Number of cells that a column must have at each point: one for each compared quantity of each compared mode."""
+        ...
+
+    @property
+    def time_limit(self) -> float:
+        """Time limit of one solution by a foreign code, s, unless the request gives another."""
+        ...
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """Names of the published tables with which it is compared."""
+        ...
+
+    @property
+    def blade(self) -> Blade | None:
+        """The blade that codes are asked whether they accept; None if the subject is none."""
+        ...
+
+    def setting(self) -> Setting:
+        """Its description in a report."""
+        ...
+
+    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+        """Its columns.
+
+        Args:
+            codes: descriptions of all codes of the run; ``refused`` is the answer to this subject's blade.
+            limits: of each solution by a foreign code.
+            added: results of other programs and measurements.
+        """
+        ...
+
+    def references(self, columns: Sequence[Column]) -> Callable[[], dict[Any, list[Any]]]:
+        """The task that solves core's references: effects → a reference, or a failure, at each point."""
+        ...
+
+    def error_budget(self) -> Callable[[], list[BudgetEntry]] | None:
+        """The task that splits core's error into its causes; None if there is none for this kind of subject."""
+        ...
+
+
+def asked_about(subjects: Collection[Subject]) -> list[Blade]:
+    """The blades that codes are asked whether they accept, in the order of the subjects."""
+    return [subject.blade for subject in subjects if subject.blade is not None]
+
+
+def speeds_of_blades(subjects: Collection[Subject]) -> dict[str, tuple[float, ...]]:
+    """Name of each blade → its rotor speeds, rad/s."""
+    return {subject.name: subject.points for subject in subjects if subject.blade is not None}
