@@ -1,0 +1,115 @@
+"""Hill's method: the exponents from the harmonics of the solutions.
+
+With ``x = e^{st} Σ_k p_k e^{ikψ}``, each harmonic j of the equations is
+
+    Σ_k [(s + ikΩ)² M_{j−k} + (s + ikΩ) C_{j−k} + K_{j−k}] p_k = 0,    |j|, |k| ≤ H,
+
+an eigenproblem in s with 2n (2H + 1) solutions: each mode up to 2H + 1 times, shifted by multiples of iΩ. Of each mode the
+solution is kept whose harmonics are centred. H grows until these remain. (Hill 1886; Bolotin, *The Dynamic Stability of Elastic
+Systems*, 1964.)
+"""
+
+import numpy as np
+import scipy.linalg
+from numpy.typing import NDArray
+
+from ..threads import one_thread
+from .exponents import Exponents, exponents, separated
+from .floquet import distance
+from .periodic import Periodic, PeriodicError
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+ACCURACY = 1e-11
+"""Change of the exponents, as a fraction of Ω, below which harmonics are not added."""
+
+MAX_SIZE = 4000
+"""Largest number of unknowns of the eigenproblem."""
+
+_EPS = float(np.finfo(float).eps)
+
+
+def hill(system: Periodic) -> Exponents:
+    """The 2n exponents of a periodic system of n coordinates; ``effort`` is the number of harmonics H.
+
+    Raises:
+        PeriodicError: the rotor stands still, a coordinate has no mass, or the exponents do not converge.
+    """
+    if not system.omega:
+        raise PeriodicError("omega: 0 rad/s: the matrices are constant, and exponents have no period")
+    with one_thread():
+        return _converged(system)
+
+
+def _converged(system: Periodic) -> Exponents:
+    """``hill`` with harmonics added until the exponents remain."""
+    n, omega = len(system.names), abs(system.omega)
+    H, step = 2 * system.harmonics + 2, max(system.harmonics, 2)
+    before: Complex | None = None
+    change = np.inf
+    while 2 * n * (2 * H + 1) <= MAX_SIZE:
+        values, shapes, rounding = _centred(system, H)
+        if len(values) == 2 * n:
+            multipliers = np.exp(2.0 * np.pi * values / omega)
+            if before is not None:
+                change = float(distance(before, multipliers).max()) / (2.0 * np.pi)
+                if change <= max(ACCURACY, rounding / omega):
+                    error = np.full(len(values), max(change * omega, rounding))
+                    return exponents(system.omega, values, error, shapes, system.mean[0], H)
+            before = multipliers
+        else:
+            before = None
+        H += step
+    raise PeriodicError(
+        f"Hill: exponents change by {change:.1e} Ω at {H - step} harmonics: a frequency or the variation of the matrices is "
+        "too large for this speed; reduce the system to its lower modes"
+    )
+
+
+def _centred(system: Periodic, H: int) -> tuple[Complex, Complex, float]:
+    """Values (m,) and shapes (2H + 1, n, m) of the solutions with centred harmonics, and the rounding of the values."""
+    n = len(system.names)
+    order = np.arange(-H, H + 1)
+    M, C, K = (_toeplitz(part, H) for part in (system.M, system.C, system.K))
+    D = np.repeat(1j * order * system.omega, n)
+    damping, stiffness = 2.0 * M * D + C, M * D**2 + C * D + K
+    size = len(D)
+    try:
+        lower = -scipy.linalg.solve(M, np.concatenate([stiffness, damping], axis=1))
+    except np.linalg.LinAlgError:
+        raise PeriodicError("a coordinate has no mass: Hill's equations have infinite solutions; condense it") from None
+    A = np.zeros((2 * size, 2 * size), np.complex128)
+    A[:size, size:] = np.eye(size)
+    A[size:] = lower
+    values, vectors = scipy.linalg.eig(A)
+    shapes = vectors[:size].reshape(2 * H + 1, n, -1)
+    root = np.sqrt(np.maximum(np.diagonal(system.mean[0]), 0.0))[:, None]
+    shapes = separated(values, shapes * root, abs(system.omega)) / np.where(root > 0, root, 1.0)
+    weight = (np.abs(shapes * root) ** 2).sum(1)
+    centre = (order[:, None] * weight).sum(0) / weight.sum(0)
+    near = np.flatnonzero(np.abs(centre) < max(1.6, H / 2))
+    chosen = near[_window(centre[near])]
+    largest = float(np.abs(values[chosen]).max(initial=0.0))
+    return values[chosen], shapes[:, :, chosen], 100.0 * _EPS * max(largest, abs(system.omega) * H)
+
+
+def _window(centre: Array) -> NDArray[np.intp]:
+    """Indices of the centres within an interval of length 1 about 0, whose ends are in the widest gap between them."""
+    fraction = np.sort(np.mod(centre[np.abs(centre) < 1.6], 1.0))
+    if not len(fraction):
+        return np.zeros(0, dtype=np.intp)
+    gaps = np.diff(np.append(fraction, fraction[0] + 1.0))
+    widest = int(gaps.argmax())
+    start = float(np.mod(fraction[widest] + 0.5 * gaps[widest], 1.0)) - 1.0
+    return np.flatnonzero((centre > start) & (centre <= start + 1.0))
+
+
+def _toeplitz(coefficients: Complex, H: int) -> Complex:
+    """(n (2H + 1), n (2H + 1)) blocks X_{j−k} of the harmonics (2h + 1, n, n)."""
+    h, n = len(coefficients) // 2, coefficients.shape[1]
+    out = np.zeros((2 * H + 1, n, 2 * H + 1, n), np.complex128)
+    for shift in range(-h, h + 1):
+        for j in range(max(0, shift), min(2 * H + 1, 2 * H + 1 + shift)):
+            out[j, :, j - shift] = coefficients[shift + h]
+    return out.reshape(n * (2 * H + 1), -1)
