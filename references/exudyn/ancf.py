@@ -22,6 +22,7 @@ from scipy.interpolate import CubicHermiteSpline
 from ...core.blade import BEND_Y, BEND_Z, Blade, sample, uniform
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
+from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import BladeAdapter, Independence, Motion
 from ..protocol.quadratic import gyroscopic_modes
 from . import system as ex
@@ -31,8 +32,6 @@ ROUNDING = 2e-15
 
 CLAMPED = [0, 1, 2, 4, 5]
 """Clamped coordinates of the root node: position and transverse slope; the axial slope is free, to allow stretch."""
-
-SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 
 class ExudynAncf(BladeAdapter):
@@ -79,6 +78,17 @@ class ExudynAncf(BladeAdapter):
         q = np.zeros((size, vectors.shape[1]), complex)
         q[free] = vectors
         return Modes(omega, frequencies, _shapes(q, blade.length), elements)
+
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From Exudyn's mass matrix; see ``interface.BladeAdapter``."""
+        M, _, _ = _matrices(blade, 0.0, elements)
+        place = np.zeros((elements + 1, 3))
+        place[:, 0] = blade.hub_radius + np.linspace(0.0, blade.length, elements + 1)
+        motions = rigid_motions(place)
+        slopes = np.zeros_like(motions)
+        slopes[:, :, 3:] = rigid_motions(np.array([1.0, 0.0, 0.0]))[:, 3:]
+        q = np.stack([motions, slopes], axis=1).reshape(-1, 6)
+        return of_matrix(q.T @ (M @ q), elements)
 
 
 def _matrices(blade: Blade, omega: float, elements: int):

@@ -40,14 +40,13 @@ from ...core.blade import (
 )
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
+from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import JUMP, element_ends, line, moments
 from . import system as ex
 
 Array = NDArray[np.float64]
-
-SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 
 MAX_ITERATIONS = 30
 """Newton iterations for a steady state."""
@@ -107,6 +106,16 @@ class ExudynGeometricallyExact(BladeAdapter):
         motion[:, 3:] = state.axes @ motion[:, 3:]
         shapes = CubicSpline(beam.ends, motion[:, :4])(STATIONS * blade.length)
         return Modes(omega, frequencies, shapes.transpose(2, 0, 1), len(beam.ends) - 1)
+
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the mass matrix of all nodes at rest; see ``interface.BladeAdapter``."""
+        beam = assemble(blade, elements)
+        state = beam.reference
+        A = _affine(state.axes)
+        turns = np.zeros((len(beam.ends), 3, 6))
+        turns[:, :, 3:] = np.swapaxes(state.axes, 1, 2)
+        q = A @ np.concatenate([rigid_motions(state.place), turns], axis=1)
+        return of_matrix((np.swapaxes(q, 1, 2) @ np.kron(beam.mass, np.eye(3)) @ q).sum(axis=0), len(beam.ends) - 1)
 
 
 @dataclass(frozen=True)

@@ -48,6 +48,7 @@ class HingedSegments:
         mass, centre, inertia: (e,), (e, 3), (e, 3, 3) of the segments, in their links' axes; inertia about the centre.
         ends: (k+1,) arc lengths of the ends of the k elements, m.
         reach: (e, 3) from a hinge to the end of its element, in the hinge's axes, m.
+        start: arc length of the first hinge, or of the root joint, m; what is before it belongs to the hub.
     """
 
     strain: Index
@@ -61,6 +62,7 @@ class HingedSegments:
     inertia: Array
     ends: Array
     reach: Array
+    start: float
 
 
 INTERVALS = 12
@@ -112,6 +114,7 @@ def hinge_segments(blade: Blade, elements: int, omega: float = 0.0) -> HingedSeg
         inertia=inertia,
         ends=ends,
         reach=reach,
+        start=float(hinges[0]),
     )
 
 

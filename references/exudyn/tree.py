@@ -18,6 +18,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
+from ..protocol.fingerprint import Fingerprint, of_matrix
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import steps
@@ -68,49 +69,72 @@ class ExudynTree(BladeAdapter):
         refinement = len(tree.ends) - 1 - steps(blade)
         return Modes(omega, frequencies, shapes, refinement)
 
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From Exudyn's mass matrix of a tree with a free hub; see ``interface.BladeAdapter``."""
+        tree = hinge_segments(blade, elements)
+        exu, _container, mbs = _system(tree, 0.0, FREE_HUB)
+        M, _, _ = ex.linearized(exu, mbs, still=True, full=True)
+        return of_matrix(M[:6, :6], len(tree.ends) - 1 - steps(blade), tree.start)
 
-def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
-    """M, C, K (n, n) about the steady state at ``omega`` (rad/s), and the joints' coordinates (n,) there.
 
-    The hub is a rotating link with fixed angle and given rate. Its motion is prescribed, so it has no row.
-    """
-    exu, _container, mbs = ex.system()
-    items, n = exu.itemInterface, len(tree.strain) + 1
+ROTATING_HUB = (BEND_Z,)
+"""Joint of a hub that turns about the rotor's axis."""
+
+FREE_HUB = (0, 1, 2, 3, 4, 5)
+"""Joints of a hub that moves along, and turns about, every axis."""
+
+
+def _system(tree: HingedSegments, omega: float, hub: tuple[int, ...]) -> tuple[Any, Any, Any]:
+    """Exudyn, a container, and the assembled system with joints ``hub`` before the tree."""
+    exu, container, mbs = ex.system()
+    items, n, first = exu.itemInterface, len(tree.strain) + len(hub), len(hub)
     mass, centre, inertia = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
-    carrier = tree.segment + 1
+    carrier = tree.segment + first
     mass[carrier], centre[carrier], inertia[carrier] = tree.mass, tree.centre, tree.inertia
     zero = np.zeros(n)
+    rates = zero.copy()
+    rates[first - 1] = omega
     node = mbs.AddNode(
         items.NodeGenericODE2(
             numberOfODE2Coordinates=n,
             referenceCoordinates=zero,
             initialCoordinates=zero,
-            initialCoordinates_t=np.append(omega, zero[1:]),
+            initialCoordinates_t=rates,
         )
     )
     mbs.AddObject(
         items.ObjectKinematicTree(
             nodeNumber=node,
-            jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in (BEND_Z, *tree.strain)],
+            jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in (*hub, *tree.strain)],
             linkParents=np.arange(-1, n - 1),
-            jointTransformations=exu.Matrix3DList([np.eye(3), *tree.turn]),
-            jointOffsets=exu.Vector3DList([np.zeros(3), *tree.offset]),
+            jointTransformations=exu.Matrix3DList([*[np.eye(3)] * first, *tree.turn]),
+            jointOffsets=exu.Vector3DList([*[np.zeros(3)] * first, *tree.offset]),
             linkMasses=mass,
             linkCOMs=exu.Vector3DList(list(centre)),
             linkInertiasCOM=exu.Matrix3DList(list(inertia)),
-            jointPControlVector=np.append(0.0, tree.stiffness),
+            jointPControlVector=np.concatenate([np.zeros(first), tree.stiffness]),
             jointDControlVector=zero,
             jointPositionOffsetVector=zero,
             jointVelocityOffsetVector=zero,
         )
     )
     if tree.coupling.nnz:
-        coupling = ex.sparse_matrix(exu, sparse.block_diag([[[0.0]], tree.coupling]))
+        coupling = ex.sparse_matrix(exu, sparse.block_diag([np.zeros((first, first)), tree.coupling]))
         mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], stiffnessMatrix=coupling))
-    ex.hold(exu, mbs, node, [0])
+    if hub == ROTATING_HUB:
+        ex.hold(exu, mbs, node, [0])
     mbs.Assemble()
+    return exu, container, mbs
+
+
+def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, Array]:
+    """M, C, K (n, n) about the steady state at ``omega`` (rad/s), and the joints' coordinates (n,) there.
+
+    The hub is a rotating link with fixed angle and given rate. Its motion is prescribed, so it has no row.
+    """
+    exu, _container, mbs = _system(tree, omega, ROTATING_HUB)
     if omega:
-        _steady_state(exu, mbs, omega, n)
+        _steady_state(exu, mbs, omega, len(tree.strain) + 1)
     M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs, still=not omega, full=True))
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 

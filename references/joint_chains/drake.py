@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Mesh
 from ..protocol.interface import extra
-from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
+from .joint_chain import JointChain, about_hub, bodies, from_core, places, require_symmetries, rigid
 
 Array = NDArray[np.float64]
 
@@ -62,6 +62,14 @@ class DrakeChain:
         """Mass matrix (n, n), by composite rigid bodies."""
         self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
         return self.plant.CalcMassMatrix(self.context)[np.ix_(self.velocity, self.velocity)]
+
+    def inertia(self) -> Array:
+        """(6, 6): Drake's composite inertia of all links."""
+        self.plant.SetPositionsAndVelocities(self.context, self._state(np.zeros(len(self.position)), 0.0))
+        links = [body.index() for body in self.bodies]
+        whole = self.plant.CalcSpatialInertia(self.context, self.plant.world_frame(), links)
+        moments = whole.CalcRotationalInertia().CopyToFullMatrix3()
+        return about_hub(whole.get_mass(), whole.get_com(), moments)
 
     def jacobian(self, q: Array) -> Array:
         """(elements, 4, n); see ``joint_chain.ChainModel``."""

@@ -22,6 +22,8 @@ from ...core.element.mesh import Mesh
 from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
+from ...core.space.spatial import skew
+from ..protocol.fingerprint import Fingerprint, of_matrix
 from ..protocol.interface import CORE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 
@@ -59,6 +61,10 @@ class ChainModel(Protocol):
 
     def mass(self, q: Array) -> Array:
         """Mass matrix (n, n)."""
+        ...
+
+    def inertia(self) -> Array:
+        """(6, 6) of the undeformed chain as a rigid body: momentum and angular momentum about the hub's centre."""
         ...
 
     def jacobian(self, q: Array) -> Array:
@@ -128,6 +134,13 @@ class JointChain(BladeAdapter):
         shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
         return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error)
 
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the code's model, and the lump at the root, which core gives to the hub; see ``interface.BladeAdapter``."""
+        self.limit(elements)
+        chain = discretize(blade, elements, "half_end", "body_fixed")
+        root = transformed(chain.lumps[:1], chain.nodes[:1])[0]
+        return of_matrix(self.build(chain).inertia() + root, chain.elements)
+
 
 def rounding(
     mass: Array, elastic: Array, stiffness: Array, before: Array, frequencies: Array, vectors: NDArray[np.complex128]
@@ -174,6 +187,12 @@ def rigid(lump: Array) -> tuple[float, Array, Array]:
     """Mass, centre (3,) and moments of inertia about the node (3, 3) of a rigid body's inertia (6, 6)."""
     mass, centre, _ = about_centre(lump)
     return float(mass), centre, lump[3:, 3:]
+
+
+def about_hub(mass: float, centre: Array, moments: Array) -> Array:
+    """(6, 6) inertia about the hub's centre from mass, centre (3,) and moments of inertia about the hub's centre (3, 3)."""
+    offset = mass * skew(centre)
+    return np.block([[mass * np.eye(3), -offset], [offset, moments]])
 
 
 def require_symmetries(stiffness: Array, gyroscopic: Array, rounding: float, code: str) -> None:

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 
 from ...core.element.mesh import Mesh
 from ..protocol.interface import extra
-from .joint_chain import JointChain, bodies, from_core, places, require_symmetries, rigid
+from .joint_chain import JointChain, about_hub, bodies, from_core, places, require_symmetries, rigid
 
 Array = NDArray[np.float64]
 
@@ -67,6 +67,16 @@ class MujocoChain:
         full = np.zeros((len(q) + 1, len(q) + 1))
         mujoco.mj_fullM(self.model, self.data, full)
         return full[1:, 1:]
+
+    def inertia(self) -> Array:
+        """(6, 6): of MuJoCo's bodies, the hub excepted."""
+        self._place(np.zeros(self.model.nv - 1))
+        out = np.zeros((6, 6))
+        for k in range(2, self.model.nbody):
+            axes, centre, mass = self.data.ximat[k].reshape(3, 3), self.data.xipos[k], float(self.model.body_mass[k])
+            moments = axes @ np.diag(self.model.body_inertia[k]) @ axes.T
+            out += about_hub(mass, centre, moments + mass * (centre @ centre * np.eye(3) - np.outer(centre, centre)))
+        return out
 
     def jacobian(self, q: Array) -> Array:
         """(elements, 4, n)."""

@@ -37,6 +37,16 @@ class PinocchioChain:
         """Mass matrix (n, n), by composite rigid bodies."""
         return _pinocchio().crba(self.model, self.data, np.append(0.0, q))[1:, 1:]
 
+    def inertia(self) -> Array:
+        """(6, 6): from Pinocchio's composite rigid bodies."""
+        pin, rest = _pinocchio(), np.zeros(self.model.nq)
+        pin.ccrba(self.model, self.data, rest, np.zeros(self.model.nv))
+        about_centre = np.array(self.data.Ig.matrix())
+        x, y, z = self.data.com[0]
+        to_hub = np.eye(6)
+        to_hub[:3, 3:] = [[0.0, z, -y], [-z, 0.0, x], [y, -x, 0.0]]
+        return to_hub.T @ about_centre @ to_hub
+
     def jacobian(self, q: Array) -> Array:
         """(elements, 4, n)."""
         pin = _pinocchio()

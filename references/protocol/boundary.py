@@ -14,6 +14,7 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from ...core.modes import STATIONS, Modes
+from .fingerprint import Fingerprint
 from .interface import DIGITS, MOTIONS, MechanismModes, Motion
 from .process import Failure, one_line
 from .wire import decode_complex, decode_modes
@@ -100,6 +101,14 @@ class _Modes(Struct, frozen=True, forbid_unknown_fields=True):
     rounding: list[float]
     strain: float
     seconds: Seconds
+
+
+class _Fingerprint(Struct, frozen=True, forbid_unknown_fields=True):
+    mass: Annotated[float, Meta(ge=0)]
+    first_moments: tuple[float, float, float]
+    rotor_inertia: float
+    elements: Elements
+    start: Annotated[float, Meta(ge=0)]
 
 
 class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
@@ -200,6 +209,20 @@ def declared(data: Any) -> Declared:
         _keep(len(declarations.levels) > 0, "levels: (): give at least one refinement")
         _keep(np.all(np.diff(declarations.levels) > 0), f"levels: {declarations.levels}: not ascending")
     return declarations
+
+
+def fingerprint(data: Any) -> Fingerprint | None:
+    """Validate the fingerprint of a model; None if the code reports none.
+
+    Raises:
+        NonsenseError: if the data are invalid.
+    """
+    if data is None:
+        return None
+    answer = convert(data, _Fingerprint)
+    for name in ("mass", "first_moments", "rotor_inertia", "start"):
+        _finite(name, getattr(answer, name))
+    return Fingerprint(answer.mass, answer.first_moments, answer.rotor_inertia, answer.elements, answer.start)
 
 
 def convert(data: Any, kind: type[T]) -> T:

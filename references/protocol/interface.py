@@ -21,6 +21,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import Modes
+from .fingerprint import Fingerprint
 
 if TYPE_CHECKING:
     from ...core.mechanism.description import Mechanism
@@ -161,6 +162,14 @@ class BladeAdapter(Adapter):
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         return self.modes(blade, omega, elements, count)
+
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint | None:
+        """Mass and inertia of the model that the code assembles of a supported blade; None if they cannot be obtained.
+
+        They are compared with a quadrature of the stations as a second reader sees them, so that an error in the sampling
+        of the stations is found by name. Return numbers of the code's own matrices, not of ``blade``.
+        """
+        return None
 
     def limit(self, elements: int) -> None:
         """Check the number of elements of a mesh.

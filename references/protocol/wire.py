@@ -20,6 +20,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.mechanism.description import Mechanism
 from ...core.modes import Modes
+from .fingerprint import Fingerprint
 from .interface import MechanismModes
 from .process import raised
 
@@ -31,7 +32,7 @@ HIGH = 200
 """Lowest file descriptor of the pipe for answers; some codes write to descriptor 3."""
 
 
-def encode(value: Blade | Modes | MechanismModes) -> dict[str, Any]:
+def encode(value: Blade | Modes | MechanismModes | Fingerprint) -> dict[str, Any]:
     """Encode as a dictionary of lists, numbers and strings, for ``json.dumps``."""
     return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
 

@@ -3,10 +3,12 @@
 The process reads one request, with a blade or with mechanisms ::
 
     {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
+    {"code": "module:attribute", "folder": …, "blade": {…}, "fingerprints": [elements, …]}
     {"code": "module:attribute", "folder": …, "mechanisms": [{…}, …], "guess": {…}}
 
 imports the code, checks its version and whether it declines, and writes one line per question as soon as it is solved:
-``{"run": 0, "modes": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a limit, finished answers are kept.
+``{"run": 0, "modes": {…}}``, ``{"run": 0, "fingerprint": {…}}`` or ``{"run": 0, "kind": …, "reason": …}``. After a crash or a
+limit, finished answers are kept.
 """
 
 import json
@@ -22,6 +24,7 @@ from ...core.mechanism.description import Mechanism
 from ...core.modes import Modes
 from . import boundary, registry, sources, store
 from .boundary import NonsenseError
+from .fingerprint import Fingerprint
 from .interface import CodeError, MechanismModes
 from .process import Failure, Limits, converse, one_line
 from .wire import (
@@ -43,6 +46,9 @@ Run = tuple[float, int, int]
 Answer = Modes | Failure
 
 MechanismAnswer = MechanismModes | Failure
+
+FingerprintAnswer = Fingerprint | Failure | None
+"""None: the code reports none."""
 
 
 def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, version: str = "") -> list[Answer]:
@@ -70,6 +76,23 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, versio
     return _exchange(request, len(runs), limits, modes, name, version)
 
 
+def fingerprints(
+    name: str, blade: Blade, elements: Sequence[int], limits: Limits, version: str = ""
+) -> list[FingerprintAnswer]:
+    """The fingerprint of a code's model with each number of elements, or a failure.
+
+    Other arguments and exceptions as for ``answers``.
+    """
+    fixed = {**registry.address(name), "blade": encode(blade)}
+
+    def request(numbers: Sequence[int]) -> bytes:
+        return json.dumps({**fixed, "fingerprints": [elements[k] for k in numbers]}).encode()
+
+    return _exchange(
+        request, len(elements), limits, lambda _, data: boundary.fingerprint(data), name, version, "fingerprint"
+    )
+
+
 def mechanism_answers(
     name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], limits: Limits, version: str = ""
 ) -> list[MechanismAnswer]:
@@ -92,6 +115,7 @@ def _exchange(
     made: Callable[[int, Any], T],
     code: str,
     version: str,
+    field: str = "modes",
 ) -> list[T | Failure]:
     """The answers to ``count`` questions, each validated by ``made(number, data)``, or failures in their place.
 
@@ -105,12 +129,13 @@ def _exchange(
         made: validates an answer.
         code: name or import path of the code.
         version: its version; empty if unknown.
+        field: key of the answer in a reply.
     """
     kept = store.opened() if limits.reuse and version and sources.bundled(code) else None
     keys = [store.key(request([k]), code, version) for k in range(count)] if kept else []
     out: dict[int, T | Failure] = {}
     for k, key in enumerate(keys):
-        if kept and (answer := _stored(kept, key, made, k)):
+        if kept and (answer := _stored(kept, key, made, k, field)):
             out[k] = answer
     asked = [k for k in range(count) if k not in out]
     lines, ended = converse(__name__, request(asked), len(asked), limits) if asked else ([], NOTHING)
@@ -120,7 +145,7 @@ def _exchange(
         except NonsenseError as error:
             ended = Failure("nonsense", str(error))
             break
-        out[k] = answer = boundary.failure(data) or _validated(made, k, data.get("modes"))
+        out[k] = answer = boundary.failure(data) or _validated(made, k, data.get(field))
         if kept and not isinstance(answer, Failure):
             with suppress(OSError):  # a full disk, or a damaged file
                 kept.put(keys[k], f"{code}, answers", line)
@@ -130,10 +155,11 @@ def _exchange(
 NOTHING = Failure("internal", "no question was asked")
 
 
-def _stored(kept: store.Store, key: str, made: Callable[[int, Any], T], number: int) -> T | None:
+def _stored(kept: store.Store, key: str, made: Callable[[int, Any], T], number: int, field: str) -> T | None:
     """The answer in the store, without the time that it took; None if there is none."""
     with suppress(KeyError, ValueError, TypeError, AttributeError):
-        return replace(made(number, json.loads(kept.get(key)[0]).get("modes")), seconds=nan)  # type: ignore[type-var]
+        answer = made(number, json.loads(kept.get(key)[0]).get(field))
+        return replace(answer, seconds=nan) if hasattr(answer, "seconds") else answer  # type: ignore[type-var]
     return None
 
 
@@ -182,7 +208,10 @@ def _solved(method: str, expected: type, solve: Callable[[], Any]) -> Reply:
 def _answer(request: Any) -> Iterator[Reply]:
     code = registry.loaded(request)
     if isinstance(code, Failure):
-        yield from [failed(code.kind, code.reason)] * len(request.get("runs") or request["mechanisms"])
+        asked = request.get("runs") or request.get("fingerprints") or request["mechanisms"]
+        yield from [failed(code.kind, code.reason)] * len(asked)
+    elif "fingerprints" in request:
+        yield from _fingerprint_replies(code, decode_blade(request["blade"]), request["fingerprints"])
     elif "blade" in request:
         yield from _blade_replies(code, decode_blade(request["blade"]), request["runs"])
     else:
@@ -195,6 +224,26 @@ def _blade_replies(code: Any, blade: Blade, runs: Sequence[Run]) -> Iterator[Rep
         return
     for omega, elements, count in runs:
         yield _solved("modes", Modes, partial(code.solve, blade, omega, elements, count))
+
+
+def _fingerprint_replies(code: Any, blade: Blade, elements: Sequence[int]) -> Iterator[Reply]:
+    if refusal := _declined(code, "unsupported", blade):
+        yield from [refusal] * len(elements)
+        return
+    for number in elements:
+        try:
+            found = code.fingerprint(blade, number)
+        except CodeError as error:
+            yield failed("refused", one_line(error))
+        except BaseException as error:
+            yield foreign_exception(error)
+        else:
+            wrong = found is not None and not isinstance(found, Fingerprint)
+            yield (
+                failed("nonsense", f"fingerprint(): {type(found).__name__}, not Fingerprint")
+                if wrong
+                else {"fingerprint": found and encode(found)}
+            )
 
 
 def _mechanism_replies(code: Any, mechanisms: Iterable[Mechanism], guess: Mapping[str, float]) -> Iterator[Reply]:

@@ -18,6 +18,7 @@ correct at zero speed, but in rotation their steady moment is missing, up to 2.7
 
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
+from dataclasses import replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -29,6 +30,7 @@ from scipy.interpolate import CubicHermiteSpline, CubicSpline
 from ...core.blade import Blade, clamped, coupled, sample, straight
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
+from ..protocol.fingerprint import Fingerprint, of_points
 from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion, extra
 from ..theories.grading import element_ends
 from .input_file import write
@@ -112,6 +114,11 @@ class PyBModes(BladeAdapter):
             frequencies, shapes = _moving(rotor, blade, count, doubted, _most(blade, len(s) - 1))
         return Modes(omega, frequencies, shapes, len(s) - 1)
 
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the masses that pyBModes gives to its elements; see ``interface.BladeAdapter``."""
+        with TemporaryDirectory() as folder:
+            return _element_masses(write(Path(folder), blade, 0.0, element_ends(blade, elements, SECTIONS), 1))
+
 
 def _pybmodes() -> Any:
     from pybmodes import models
@@ -124,6 +131,25 @@ def _rotor(blade: Blade, omega: float, s: Array, count: int) -> Iterator[Any]:
     """pyBModes's model of a blade on elements that end at ``s`` (n+1,), m; its input file exists meanwhile."""
     with TemporaryDirectory() as folder:
         yield _pybmodes().RotatingBlade(write(Path(folder), blade, omega, s, count))
+
+
+def _element_masses(path: Path) -> Fingerprint:
+    """The elements of an input file as pyBModes samples them: each has its mass at, and spread evenly about, its middle."""
+    from pybmodes.fem.assembly import compute_element_props
+    from pybmodes.io.bmi import read_bmi
+    from pybmodes.io.sec_props import read_sec_props
+
+    main = read_bmi(path)
+    table = read_sec_props(main.resolve_sec_props_path())
+    hub = main.hub_rad / main.radius
+    table.span_loc = table.span_loc * (1 - hub) + hub
+    length, start, *properties = compute_element_props(main.n_elements, np.asarray(main.el_loc), table, hub)
+    length, start = length * main.radius, start * main.radius
+    mass = properties[5] * length
+    place = np.zeros((len(mass), 3))
+    place[:, 0] = start + length / 2
+    whole = of_points(mass, place, len(mass))
+    return replace(whole, rotor_inertia=whole.rotor_inertia + float(mass @ length**2) / 12)
 
 
 def _doubled(blade: Blade, omega: float, count: int) -> bool:

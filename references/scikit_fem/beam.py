@@ -16,6 +16,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, clamped, coupled, sam
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.cache_last import cache_last
+from ..protocol.fingerprint import Fingerprint, of_matrix
 from ..protocol.interface import BladeAdapter, CodeError, Independence, extra
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.grading import element_ends
@@ -96,6 +97,18 @@ class ScikitFemBeam(BladeAdapter):
         q[free] = vectors
         shapes = np.stack([read @ q[of] for of, read in readings], axis=-1).transpose(1, 0, 2)
         return Modes(omega, frequencies, shapes, basis.mesh.nelements)
+
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the mass matrix of all coordinates at rest; see ``interface.BladeAdapter``."""
+        basis, parts, _ = _mesh(blade, elements)
+        M, _, _ = _matrices(blade, 0.0, parts)
+        q = np.zeros((basis.N, 6))
+        bases = basis.split_bases()
+        for k, (of, field) in enumerate(zip(basis.split_indices(), bases, strict=True)):
+            q[of, k] = field.project(lambda x: np.ones_like(x[0]))
+            if k in (1, 2):  # rotations about z and y move v and w
+                q[of, 5 if k == 1 else 4] = (1 if k == 1 else -1) * field.project(lambda x: blade.hub_radius + x[0])
+        return of_matrix(q.T @ (M @ q), basis.mesh.nelements)
 
 
 def _hinges(blade: Blade, basis: Any) -> dict[int, float]:

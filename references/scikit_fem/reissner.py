@@ -20,12 +20,13 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.cache_last import cache_last
+from ..protocol.fingerprint import Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence, extra
 from ..protocol.quadratic import gyroscopic_modes
-from ..theories.reference_line import element_ends, moments, steps
+from ..theories.reference_line import element_ends, line, moments, steps
 from . import reissner_forms as forms
 from .assembly import bilinear, skfem
-from .reissner_beam import Beam, State, beam_of, spatial, stiffening, strain, strain_rate
+from .reissner_beam import Beam, State, at_rest, beam_of, spatial, stiffening, strain, strain_rate
 from .reissner_steady import steady_state
 
 Array = NDArray[np.float64]
@@ -90,6 +91,20 @@ class ScikitFemReissner(BladeAdapter):
         refinement = beam.elements - steps(blade)
         return Modes(omega, frequencies, shapes, refinement, strain=largest)
 
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the mass matrix of all coordinates at rest; see ``interface.BladeAdapter``."""
+        self.limit(len(element_ends(blade, elements, COARSEST)) - 1)
+        beam = _beam(blade, elements)
+        M = _mass(beam, at_rest(beam))
+        s = beam.basis.doflocs[0]
+        own = np.zeros(beam.basis.N, dtype=np.intp)
+        for dofs in (beam.basis.nodal_dofs, beam.basis.interior_dofs):
+            own[dofs] = np.arange(6)[:, None]
+        place = line(blade, s[:, None]).place[:, 0]
+        motions = np.concatenate([rigid_motions(place), np.broadcast_to(np.eye(6)[3:], (len(s), 3, 6))], axis=1)
+        q = motions[np.arange(len(s)), own]
+        return of_matrix(q.T @ (M @ q), beam.elements)
+
 
 @cache_last
 def _beam(blade: Blade, elements: int) -> Beam:
@@ -126,10 +141,9 @@ def _soft(beam: Beam) -> NDArray[np.intp]:
 
 def _matrices(beam: Beam, state: State, omega: float, Z: spla.LinearOperator) -> tuple[Any, Any, Array]:
     """M, C, K of the coordinates, whose motions are the columns of ``Z``. All are full; large M and C are operators."""
-    M = C = sp.csr_array((beam.basis.N, beam.basis.N))
+    M, C = _mass(beam, state), sp.csr_array((beam.basis.N, beam.basis.N))
     for part, axes in zip(beam.parts, state.part_axes, strict=True):
         about = spatial(part, axes)
-        M = M + bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.inertia(about), 2))
         C = C + omega * bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.gyroscopic(about), 2))
     soft = _soft(beam)
     roots = Z.shape[1] - len(soft)
@@ -140,6 +154,14 @@ def _matrices(beam: Beam, state: State, omega: float, Z: spla.LinearOperator) ->
     if len(K) <= FORMED:
         return full.T @ (M @ full), full.T @ (C @ full), K
     return Z.T @ spla.aslinearoperator(M) @ Z, Z.T @ spla.aslinearoperator(C) @ Z, K
+
+
+def _mass(beam: Beam, state: State) -> Any:
+    """Mass matrix of all coordinates."""
+    M = sp.csr_array((beam.basis.N, beam.basis.N))
+    for part, axes in zip(beam.parts, state.part_axes, strict=True):
+        M = M + bilinear(forms.quadratic, part.basis, on=forms.for_fem(forms.inertia(spatial(part, axes)), 2))
+    return M
 
 
 def _elastic(beam: Beam, soft: NDArray[np.intp]) -> Array:

@@ -9,12 +9,15 @@ Elements have 27 nodes and full integration (see ``hexahedra``). Refinement is a
 section is that from which the sections were identified.
 """
 
+from dataclasses import replace
+
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
+from ..protocol.fingerprint import Fingerprint, of_points
 from ..protocol.interface import BladeAdapter, Independence, Motion
 from . import bar, hexahedra
 from .curved import CurvedSolid, layer, with_root_forces
@@ -66,6 +69,19 @@ class ScikitFemSolid(BladeAdapter):
             return hexahedra.modes(bricks, material, omega, count, clamped(blade.hub_radius))
 
         return bar.modes(blade, omega, elements, count, solved)
+
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the mass matrix of the solid, summed over its nodes; see ``interface.BladeAdapter``."""
+        solid, _ = recognised(blade)
+        layers = bar.LAYERS * -(-elements // bar.LAYERS)
+        if solid:
+            body = hexahedra.solid(with_root_forces(solid, layers, ACROSS)[0], solid.material)
+        else:
+            body = hexahedra.solid(*bar.bar(blade, layers))
+        M = hexahedra.mass(body)
+        x, y, _ = body.nodes.T
+        summed = of_points(np.asarray(M.sum(axis=1)).ravel(), body.nodes, layers)
+        return replace(summed, rotor_inertia=float(x @ (M @ x) + y @ (M @ y)))
 
 
 def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:

@@ -1,6 +1,6 @@
 """Common to the closed forms: a straight blade at quadrature points, its tension, and the check for unsupported blades."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from importlib.metadata import version as installed
 
 import numpy as np
@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, Sections, clamped, coupled, sample, straight
+from ..protocol.fingerprint import Fingerprint, of_points
 from ..protocol.interface import BladeAdapter
 from .spectral import gauss, intervals
 
@@ -129,6 +130,15 @@ class ClosedForm(BladeAdapter):
 
     levels = LEVELS
     order = 0
+
+    def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
+        """From the masses at the quadrature points of its integrals; see ``interface.BladeAdapter``."""
+        at = line(blade, terms(blade, elements))
+        place = np.zeros((len(at.s), 3))
+        place[:, 0] = blade.hub_radius + at.s
+        points = of_points(at.mass, place, elements)
+        own = at.I_z.sum() if self.effects.rotary_inertia else at.I_z[-1]
+        return replace(points, rotor_inertia=points.rotor_inertia + float(own))
 
     def version(self) -> str:
         """Version of this package, which needs no foreign code."""

@@ -1,0 +1,132 @@
+"""Compare the mass and inertia of a code's own model with a quadrature of the stations that does not use core.
+
+Every code samples the stations through ``core.blade``; a model that is too heavy is therefore an error that all share, and
+their frequencies agree. Lumped masses converge with the square of the element size: a second number of elements removes
+that part.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.element.discretize import discretize
+from ...core.space import spatial as sp
+from ...core.space.inertia import transformed
+from ...references.protocol.fingerprint import Fingerprint, of_matrix
+from ...references.readers.quadrature import weigh
+from ...references.readers.stations import Stations
+
+Array = NDArray[np.float64]
+
+TARGET = 1e-3
+"""Largest difference of mass and inertia."""
+
+EXACT = 1e-5
+"""Difference below which no second number of elements is needed."""
+
+NAMES = (
+    ("mass", "kg"),
+    ("first moment of mass along x", "kg m"),
+    ("first moment of mass along y", "kg m"),
+    ("first moment of mass along z", "kg m"),
+    ("inertia about the rotor's axis", "kg m²"),
+)
+
+
+@dataclass(frozen=True)
+class Weight:
+    """One property of a code's model against the stations.
+
+    Attributes:
+        name: the property.
+        difference: relative; of a first moment, relative to mass times tip radius.
+        uncertainty: part of the difference that a finer mesh removes, relative.
+        model: value in the code's model.
+        stations: value by quadrature of the stations.
+        unit: unit of both values.
+    """
+
+    name: str
+    difference: float
+    uncertainty: float
+    model: float
+    stations: float
+    unit: str
+
+    @property
+    def agrees(self) -> bool:
+        """Whether the difference is within the target."""
+        return abs(self.difference) <= TARGET
+
+    @property
+    def line(self) -> str:
+        """One line on the difference."""
+        return (
+            f"{self.name}: {self.model:.6g} {self.unit} in the code's model, {self.stations:.6g} {self.unit} by quadrature of "
+            f"the stations: {100 * self.difference:+.2g} %"
+        )
+
+
+def stations_of(blade: Blade) -> Stations:
+    """The stations of a blade as its description states them, where no second reader has read its file."""
+    return Stations("its description", blade.stations, blade.stiffness, blade.mass, blade.twist, blade.curve)
+
+
+def enough(blade: Blade, stations: Stations, first: Fingerprint, rotary: bool) -> bool:
+    """Whether the model with the first number of elements shows no difference that a finer mesh could remove."""
+    return all(abs(w.difference) <= EXACT for w in weights(blade, stations, [first], rotary))
+
+
+def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rotary: bool = True) -> tuple[Weight, ...]:
+    """The properties of a code's model against those of the stations.
+
+    Args:
+        blade: for its mounting, tip mass and kinks.
+        stations: as a second reader, or the description of the blade, has them.
+        models: with one or two numbers of elements, coarse to fine.
+        rotary: whether the code has the moments of inertia of the sections.
+    """
+    rows = [_differences(blade, stations, model, rotary) for model in models]
+    found, expected, last = rows[-1]
+    removed = np.zeros(5)
+    if len(models) == 2 and models[1].elements > models[0].elements:
+        ratio = models[1].elements / models[0].elements
+        removed = (last - rows[0][2]) / (ratio**2 - 1.0)
+    return tuple(
+        Weight(name, float(last[k] + removed[k]), abs(float(removed[k])), float(found[k]), float(expected[k]), unit)
+        for k, (name, unit) in enumerate(NAMES)
+    )
+
+
+def _differences(blade: Blade, stations: Stations, model: Fingerprint, rotary: bool) -> tuple[Array, Array, Array]:
+    """Values (5,) of the model and of the stations, and their relative differences."""
+    mass, first, inertia = weigh(
+        stations,
+        blade.hub_radius,
+        blade.precone,
+        blade.pitch,
+        blade.tip_mass,
+        kinks=blade.kinks,
+        start=model.start,
+        rotary=rotary,
+    )
+    found = np.array([model.mass, *model.first_moments, model.rotor_inertia])
+    expected = np.array([mass, *first, inertia])
+    moment = mass * (blade.hub_radius + blade.length)
+    return found, expected, (found - expected) / [mass, moment, moment, moment, inertia]
+
+
+ELEMENTS = 16
+"""Number of elements of core's own model, which any number integrates exactly between stations."""
+
+
+def of_core(blade: Blade) -> Fingerprint:
+    """The fingerprint of the model that core assembles."""
+    mesh = discretize(blade, ELEMENTS)
+    points = mesh.beams.points
+    at = mesh.nodes[mesh.parent[points.element]] @ sp.exp(points.zeta0)
+    bodies = transformed(points.mass, at).sum(axis=0) + transformed(mesh.lumps, mesh.nodes).sum(axis=0)
+    return of_matrix(bodies, ELEMENTS)

@@ -1,0 +1,57 @@
+"""What a code's own assembled model weighs: mass, first moments and inertia about the rotor's axis.
+
+They are those of the undeformed blade as a rigid body, about the hub's centre, in axes that turn with the hub: x at the
+blade's azimuth, z the rotor's axis.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array = NDArray[np.float64]
+
+SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
+"""The vector product e_z ×."""
+
+
+@dataclass(frozen=True)
+class Fingerprint:
+    """Inertia of a model as a rigid body.
+
+    Attributes:
+        mass: kg.
+        first_moments: along x, y, z, kg m.
+        rotor_inertia: about z, kg m².
+        elements: number of elements of the model.
+        start: arc length at which the model's own mass begins, m; what is before it belongs to the hub.
+    """
+
+    mass: float
+    first_moments: tuple[float, float, float]
+    rotor_inertia: float
+    elements: int
+    start: float = 0.0
+
+
+def rigid_motions(place: Array) -> Array:
+    """(…, 3, 6) displacements of points ``place`` (…, 3) by unit motions along, then about, x, y, z of the hub."""
+    x, y, z = np.moveaxis(place, -1, 0)
+    none, one = np.zeros_like(x), np.ones_like(x)
+    rows = ((one, none, none, none, z, -y), (none, one, none, -z, none, x), (none, none, one, y, -x, none))
+    return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
+
+
+def of_matrix(inertia: ArrayLike, elements: int, start: float = 0.0) -> Fingerprint:
+    """The fingerprint of a rigid body's inertia (6, 6) about the hub's centre, in the order of ``rigid_motions``."""
+    m = np.asarray(inertia, float)
+    return Fingerprint(
+        float(m[0, 0]), (float(m[1, 5]), float(m[2, 3]), float(m[0, 4])), float(m[5, 5]), elements, start
+    )
+
+
+def of_points(mass: Array, place: Array, elements: int) -> Fingerprint:
+    """The fingerprint of masses (n,) at points (n, 3)."""
+    first = mass @ place
+    inertia = float(mass @ (place[:, :2] ** 2).sum(axis=1))
+    return Fingerprint(float(mass.sum()), (float(first[0]), float(first[1]), float(first[2])), inertia, elements)

@@ -1,0 +1,182 @@
+"""Every code's own model weighs what its stations weigh; an error of 1 % in the sampling is found in all, by name."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.cases.reading import weights as wt
+from southwell.core import blade as core_blade
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
+from southwell.references.protocol import registry, worker
+from southwell.references.protocol.fingerprint import Fingerprint
+from southwell.references.protocol.interface import BladeAdapter
+from southwell.references.protocol.process import Failure, Limits
+from southwell.references.pybmodes import input_file
+
+from ...support.codes import BLADE_CODES
+
+S = np.array([0.0, 4.0, 11.0, 20.0])
+MASS = np.array([90.0, 60.0, 35.0, 20.0])
+
+
+def tapered(**changes: Any) -> Blade:
+    """Straight, tapered, twisted, with rotary inertia."""
+    blade = Blade(
+        name="tapered",
+        stations=S,
+        stiffness=section_stiffness(1e9 * MASS / 90, 1e7 * MASS / 90, 1e7 * MASS / 90, 4e7 * MASS / 90),
+        mass=section_mass(MASS, 0.02 * MASS, 0.1 * MASS),
+        twist=np.array([0.2, 0.15, 0.05, 0.0]),
+        hub_radius=1.5,
+        pitch=0.1,
+    )
+    return replace(blade, **changes)
+
+
+def crooked() -> Blade:
+    """Prebent, swept, preconed, pitched, with shear, mass centres off the axis and a tip mass off the axis."""
+    fine = np.linspace(0.0, 20.0, 40001)
+    curve = np.stack([fine, 1.2 * (fine / 20.0) ** 2, -2.0 * (fine / 20.0) ** 3], axis=1)
+    arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))])
+    s = arc[::4000]
+    per_length = np.interp(s, S, MASS)
+    y, z = 0.15, -0.05
+    shift = np.eye(6)
+    shift[:3, 3:] = [[0.0, z, -y], [-z, 0.0, 0.0], [y, 0.0, 0.0]]
+    tip = np.diag([30.0, 30.0, 30.0, 3.0, 2.0, 4.0])
+    return tapered(
+        name="crooked",
+        stations=s,
+        twist=np.interp(s, S, [0.2, 0.15, 0.05, 0.0]),
+        mass=shift.T @ section_mass(per_length, 0.02 * per_length, 0.1 * per_length) @ shift,
+        stiffness=section_stiffness(1e9, 1e7, 1e7, 4e7, 1e8, 1e8) * (per_length / 90)[:, None, None],
+        curve=curve[::4000],
+        precone=-0.08,
+        tip_mass=shift.T @ tip @ shift,
+    )
+
+
+UNIFORM = uniform_blade(
+    "uniform", 20.0, 1.5, EA=1e9, GJ=1e7, EI_y=1e7, EI_z=1e7, mass=50.0, I_y=50.0 * 0.01, I_z=50.0 * 0.01
+)
+BLADES = {
+    "uniform": UNIFORM,
+    "tapered": tapered(),
+    "untwisted": tapered(twist=np.zeros(4), pitch=0.0),
+    "crooked": crooked(),
+}
+REPORT = (
+    "exudyn-ancf",
+    "exudyn-beam",
+    "exudyn-tree",
+    "scikit-fem",
+    "scikit-fem-reissner",
+    "pinocchio",
+    "drake",
+    "mujoco",
+)
+REPORT += ("pybmodes", "scikit-fem-solid", "exact-beam", "assumed-modes", "yoo-shin", "southwell-equation")
+"""Codes that report fingerprints; frame3dd, sharpy and calculix run elsewhere and return only their results."""
+
+
+def code(name: str) -> BladeAdapter:
+    found = registry.code(registry.locate(name))
+    assert isinstance(found, BladeAdapter)
+    if found.version() is None:
+        pytest.skip(f"{name} is not installed")
+    return found
+
+
+def models(code: BladeAdapter, blade: Blade) -> list[Fingerprint]:
+    out = []
+    for elements in code.levels[:2]:
+        found = code.fingerprint(blade, elements)
+        assert found is not None
+        out.append(found)
+    return out
+
+
+@pytest.mark.parametrize("name", REPORT)
+def test_every_model_weighs_what_its_stations_weigh(name: str) -> None:
+    adapter = code(name)
+    fitting = [blade for blade in BLADES.values() if adapter.unsupported(blade) is None]
+    assert fitting
+    for blade in fitting:
+        found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade), adapter.effects.rotary_inertia)
+        assert [w.line for w in found if abs(w.difference) > 1e-4] == [], blade.name
+        assert found[0].difference == pytest.approx(0.0, abs=1e-9)
+
+
+@pytest.mark.parametrize("blade", BLADES.values(), ids=BLADES)
+def test_core_weighs_what_its_stations_weigh(blade: Blade) -> None:
+    found = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
+    assert max(abs(w.difference) for w in found) < 1e-8
+
+
+def test_codes_that_report_are_those_listed() -> None:
+    reporting = {
+        name
+        for name in BLADE_CODES
+        if type(registry.code(registry.locate(name))).fingerprint is not BladeAdapter.fingerprint  # pyright: ignore[reportAttributeAccessIssue]
+    }
+    assert reporting == set(REPORT)
+
+
+def heavier(old: Callable[..., Any]) -> Callable[..., Any]:
+    """An interpolation that makes the mass 1 % too large, and leaves the stiffness."""
+
+    def interpolate(stations: Any, values: Any, s: Any) -> Any:
+        out = old(stations, values, s)
+        is_mass = np.allclose(values[:, 0, 0], values[:, 1, 1]) and np.isfinite(values).all()
+        return out * (1.01 if is_mass else 1.0)
+
+    return interpolate
+
+
+@pytest.mark.parametrize("name", ["exudyn-tree", "scikit-fem-reissner", "scikit-fem", "pinocchio"])
+def test_one_per_cent_of_mass_in_the_shared_sampling_is_found_by_name(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
+    monkeypatch.setattr(core_blade, "_interpolate", heavier(core_blade._interpolate))
+    found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade))
+    wrong = {w.name: w.difference for w in found if not w.agrees}
+    assert set(wrong) == {"mass", "first moment of mass along x", "inertia about the rotor's axis"}
+    assert wrong["mass"] == pytest.approx(0.01, rel=1e-3)
+    line = next(w.line for w in found if w.name == "mass")
+    assert line.startswith("mass: ")
+    assert line.endswith(" kg by quadrature of the stations: +1 %")
+    core = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
+    assert not core[0].agrees
+
+
+def test_a_code_without_rotary_inertia_is_compared_without_it() -> None:
+    adapter, blade = code("pybmodes"), tapered()
+    stations = wt.stations_of(blade)
+    assert not adapter.effects.rotary_inertia
+    with_it, without = (wt.weights(blade, stations, models(adapter, blade), rotary)[4] for rotary in (True, False))
+    assert abs(without.difference) < 1e-5 < abs(with_it.difference)
+
+
+def test_one_per_cent_of_mass_in_one_adapter_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    def sampled(blade: Blade, s: Any) -> Any:
+        at = core_blade.sample(blade, s)
+        return replace(at, mass=1.01 * at.mass)
+
+    monkeypatch.setattr(input_file, "sample", sampled)
+    adapter, blade = code("pybmodes"), tapered()
+    found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade), rotary=False)
+    assert found[0].difference == pytest.approx(0.01, rel=1e-6)
+
+
+def test_fingerprints_cross_the_process_unchanged() -> None:
+    blade = BLADES["crooked"]
+    adapter = code("scikit-fem-reissner")
+    fine, coarse = worker.fingerprints("scikit-fem-reissner", blade, [16, 8], Limits())
+    assert (fine, coarse) == (adapter.fingerprint(blade, 16), adapter.fingerprint(blade, 8))
+    (declined,) = worker.fingerprints("exudyn-ancf", blade, [10], Limits())
+    assert isinstance(declined, Failure)
+    assert declined.kind == "unsupported"
