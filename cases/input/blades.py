@@ -13,7 +13,9 @@ import numpy as np
 from msgspec import Meta
 
 from ...core.blade import (
+    AXIAL,
     ROOT_TOLERANCE,
+    TORSION,
     Blade,
     BladeError,
     mass_at,
@@ -43,24 +45,26 @@ class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
 
     length: Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="from root to tip, m")]
     E: Annotated[float, _positive("Young's modulus, Pa")]
-    G: Annotated[float, _positive("shear modulus, Pa")]
     density: Annotated[float, _positive("kg/m³")]
     A: Annotated[float, _positive("area of the cross-section, m²")]
     I_y: Annotated[float, _positive("second moment of area about y, resisting flapwise motion, m⁴")]
     I_z: Annotated[float, _positive("second moment of area about z, resisting edgewise motion, m⁴")]
-    J: Annotated[float, _positive("torsion constant, m⁴")]
+    G: Annotated[float, _positive("shear modulus, Pa; without G and J the beam is rigid in torsion")] | None = None
+    J: Annotated[float, _positive("torsion constant, m⁴")] | None = None
     hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
     rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; ``folder`` is not used."""
+        if (self.G is None) != (self.J is None):
+            raise BladeError("G and J: give both, or neither for a beam that is rigid in torsion")
         inertia = self.density if self.rotary_inertia else 0.0
         blade = uniform_blade(
             name,
             self.length,
             self.hub_radius,
             EA=self.E * self.A,
-            GJ=self.G * self.J,
+            GJ=self.G * self.J if self.G and self.J else np.inf,
             EI_y=self.E * self.I_y,
             EI_z=self.E * self.I_z,
             mass=self.density * self.A,
@@ -117,10 +121,10 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
         "mass [kg/m]",
         "EI_flap [N m^2]",
         "EI_edge [N m^2]",
-        "GJ [N m^2]",
-        "EA [N]",
     )
-    OPTIONAL: ClassVar[tuple[str, ...]] = ("I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
+    RIGID: ClassVar[tuple[str, ...]] = ("GJ [N m^2]", "EA [N]")
+    """Columns without which the blade is rigid in torsion or along its axis."""
+    OPTIONAL: ClassVar[tuple[str, ...]] = (*RIGID, "I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
 
     def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
         """The blade, and the columns of its table that a switch in the case excludes.
@@ -147,12 +151,13 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
         """
         path = folder / self.file
         columns = read_table(path, self.COLUMNS, self.OPTIONAL)
-        fraction, twist, mass, flap, edge, torsion, axial = (columns[c] for c in self.COLUMNS)
+        fraction, twist, mass, flap, edge = (columns[c] for c in self.COLUMNS)
+        torsion, axial = (columns.get(c, np.full_like(mass, np.inf)) for c in self.RIGID)
         if abs(fraction[-1] - 1.0) > ROOT_TOLERANCE:
             raise CaseError(
                 f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
             )
-        I_flap, I_edge, ahead = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL)
+        I_flap, I_edge, ahead = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL[len(self.RIGID) :])
         sections = offset(section_mass(mass, I_flap, I_edge), ahead * (not self.centred))
         try:
             blade = Blade(
@@ -202,6 +207,13 @@ def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
 
 
 BladeData = Beam | Dimensionless | Stations | Sections | FromFile
+
+
+def rigid_strains(blade: Blade) -> str:
+    """What a blade's data leave out and therefore make rigid: ``axial and torsional stiffness``; empty if neither."""
+    rigid = np.isinf(np.diagonal(blade.stiffness, axis1=1, axis2=2)).any(0)
+    names = [name for name, strain in (("axial", AXIAL), ("torsional", TORSION)) if rigid[strain]]
+    return f"{' and '.join(names)} stiffness" if names else ""
 
 
 def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict[str, np.ndarray]:

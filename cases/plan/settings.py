@@ -8,6 +8,7 @@ from scipy.integrate import trapezoid
 
 from ...core.blade import Blade, clamped
 from ...references.protocol.interface import MOTIONS
+from ..input.blades import rigid_strains
 from ..input.properties import farthest
 from ..input.schema import Case, Variant
 from ..judge.results import Setting, Unit
@@ -68,6 +69,7 @@ def _dimensional(blade: Blade) -> dict[str, str]:
         "sweep": f"{sweep:.4g} m (positive to the leading edge)" if sweep else "",
         **_mounting(blade, "kg"),
         "rotary inertia": "" if blade.mass[:, 3:, 3:].any() else "none",
+        "not given, rigid": rigid_strains(blade),
     }
 
 

@@ -14,7 +14,7 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from ...cases.campbell import confirmation
+from ...cases.campbell import confirmation, interpolation
 from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
 from ...cases.campbell.required import required_margin
@@ -181,10 +181,11 @@ def command(
         about = (*options.blade_alone(blade), *options.loads(azimuth, tilt, load))
         for text in about:
             output().print(text, style="bold", markup=False, soft_wrap=True)
-        _show(diagram, units, subject, extra)
+        doubts = interpolation.warnings(subject.blade, modes)
+        _show(diagram, units, subject, extra, doubts)
         kept &= tables.margins_kept(diagram)
         line = shlex.join(["southwell", *sys.argv[1:]])
-        origin = Origin((*about, *subject.about), subject.files, not_used.lines(subject.unused))
+        origin = Origin((*about, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))
         with writable(f"--out {out}"):
             written = page.write(diagram, folder, units, line, origin, extra, files)
             if html:
@@ -292,7 +293,9 @@ def _one(blade: Blade, request: CampbellRequest, omega: float, units: Units) -> 
     return solver(blade, request, at=units.at)(omega)
 
 
-def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet]) -> None:
+def _show(
+    diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet], doubts: Sequence[str] = ()
+) -> None:
     console = output()
     for sheet in (*tables.sheets(diagram, units), *extra):
         console.print(tables.terminal(sheet, console.width))
@@ -300,7 +303,7 @@ def _show(diagram: Campbell, units: Units, subject: Subject, extra: Sequence[She
     for line in subject.about:
         console.print(line, style="dim", markup=False)
     not_used.show(subject.unused, console)
-    for line in tables.notes(diagram, units):
+    for line in (*doubts, *tables.notes(diagram, units)):
         console.print(line, style="yellow", markup=False, soft_wrap=True)
     line = tables.verdict(diagram, units)
     console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)

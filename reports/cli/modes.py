@@ -6,6 +6,7 @@ import msgspec
 import numpy as np
 from rich.console import Console
 
+from ...cases.campbell import interpolation
 from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.diagram import CampbellRequest
 from ...cases.campbell.sweep import Named
@@ -99,6 +100,8 @@ def modes(
         for note in subject.notes:
             console.print(note, style="dim", markup=False, soft_wrap=True)
         not_used.show(subject.unused, console)
+        for line in interpolation.warnings(blade, modes):
+            console.print(line, style="yellow", markup=False, soft_wrap=True)
         if not json:
             mesh = f"accuracy {accuracy:g}" if elements is None else f"{elements} elements"
             title = f"{blade.name}: {len(blade.stations)} stations, {mesh}"

@@ -13,7 +13,17 @@ from ...cases.plan.settings import settings
 from ...core.blade import Blade
 from ..shared.units import BY_KEY, RPM, Units
 
-FACTS = ("length", "hub radius", "mass", "stations", "twist", "rotary inertia", "slenderness", "hub ratio")
+FACTS = (
+    "length",
+    "hub radius",
+    "mass",
+    "stations",
+    "twist",
+    "rotary inertia",
+    "not given, rigid",
+    "slenderness",
+    "hub ratio",
+)
 """Facts on a case's blade that are shown."""
 
 

@@ -12,7 +12,7 @@ from msgspec import Meta, Struct
 
 from ....core.blade import Blade, BladeError
 from .. import atomic
-from ..blades import BladeData, Dimensionless, Stations
+from ..blades import BladeData, Dimensionless, Stations, rigid_strains
 from ..errors import CaseError
 from ..names import Name
 from ..toml import OR_A_NAME, convert, document, finite
@@ -53,8 +53,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         if mount.length is None:
             raise CaseError(f"{path}: length: stations are fractions of it: give --length and --hub-radius")
         described = Stations(file=path.name, length=mount.length)
-        source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight",))
-        return Reading(_mounted(described.blade(path.stem, path.parent), mount), source)
+        blade = described.blade(path.stem, path.parent)
+        source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight", *_rigid(blade)))
+        return Reading(_mounted(blade, mount), source)
     data = document(path)
     finite(data, str(path))
     text = convert(data, BladeFile, str(path))
@@ -68,8 +69,13 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         raise error if str(error).startswith(str(path.parent)) else CaseError(f"{path}: {error}") from error
     except BladeError as error:
         raise CaseError(f"{path}: blade: {error}") from error
-    notes = tuple(note for note in (text.title, text.source) if note)
+    notes = (*(note for note in (text.title, text.source) if note), *_rigid(blade))
     return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes, left))
+
+
+def _rigid(blade: Blade) -> tuple[str, ...]:
+    """A note on strains that are rigid because the file has no stiffness for them."""
+    return (f"{strains} not given: treated as rigid",) if (strains := rigid_strains(blade)) else ()
 
 
 def _mounted(blade: Blade, mount: Mount) -> Blade:

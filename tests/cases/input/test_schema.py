@@ -7,8 +7,10 @@ import pytest
 
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
+from southwell.cases.input.readers import Mount, southwell_toml
 from southwell.cases.input.schema import read, speed_range
 from southwell.core.blade import sample
+from southwell.core.solve import modes
 
 GOOD = """
 name = "mine"
@@ -136,7 +138,7 @@ BAD = [
     ("E = 7e10", "E = inf", ["blade.E: inf", "not a finite number"]),
     ("length = 6.0", 'length = "6 m"', ["blade.length: '6 m'", "expected float, got str"]),
     ("hub_radius = 0.3", "hub_radius = -1", ["blade.hub_radius: -1", ">= 0"]),
-    ("J = 4e-7", "", ["blade.J: missing: add it"]),
+    ("J = 4e-7", "", ["G and J: give both, or neither"]),
     ('kind = "beam"', 'kind = "plate"', ["blade.kind: 'plate'"]),
     ('name = "mine"', "", ["name: missing"]),
     ('name = "mine"', 'name = "my case"', ["name: 'my case'"]),
@@ -238,3 +240,27 @@ def test_the_blade_is_the_published_one() -> None:
     assert surrogate.stiffness[:, 0, 0] == pytest.approx(windpact.stiffness[:, 0, 0])
     assert not untwisted.twist.any()
     assert windpact.twist[0] == pytest.approx(np.radians(11.1))
+
+
+def test_a_table_without_axial_and_torsional_stiffness_is_rigid_there_and_says_so(tmp_path: Path) -> None:
+    """Many published blades have neither; bending is that of the complete table, whose stiffness is large."""
+    table = "fraction [-],twist [deg],mass [kg/m],EI_flap [N m^2],EI_edge [N m^2]\n0,0,3,48,96\n1,0,3,48,96\n"
+    (tmp_path / "blade.csv").write_text(table)
+    read = southwell_toml.read(tmp_path / "blade.csv", Mount(length=2.0))
+    assert np.isinf(read.blade.stiffness[:, [0, 3], [0, 3]]).all()
+    assert "axial and torsional stiffness not given: treated as rigid" in read.source.notes
+    complete = table.replace("^2]\n", "^2],GJ [N m^2],EA [N]\n").replace("48,96\n", "48,96,1e9,1e12\n")
+    (tmp_path / "complete.csv").write_text(complete)
+    stiff = southwell_toml.read(tmp_path / "complete.csv", Mount(length=2.0))
+    assert not any("rigid" in note and "not given" in note for note in stiff.source.notes)
+    first, second = (modes(b.blade, 3.0, 20, 3).frequencies for b in (read, stiff))
+    np.testing.assert_allclose(first, second, rtol=1e-6)
+
+
+def test_a_beam_without_shear_modulus_and_torsion_constant_is_rigid_in_torsion(tmp_path: Path) -> None:
+    path = tmp_path / "beam.toml"
+    section = "E = 1e9\ndensity = 1e3\nA = 1e-3\nI_y = 1e-8\nI_z = 1e-8\n"
+    path.write_text(f'name = "b"\n[blade]\nkind = "beam"\nlength = 2\n{section}')
+    read = southwell_toml.read(path)
+    assert np.isinf(read.blade.stiffness[:, 3, 3]).all()
+    assert "torsional stiffness not given: treated as rigid" in read.source.notes
