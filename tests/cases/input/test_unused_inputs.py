@@ -168,7 +168,9 @@ def test_in_a_run_its_results_and_its_report(tmp_path: Path, capsys: pytest.Capt
     for name in ("elastodyn_main.dat", "elastodyn_blade.dat"):
         shutil.copy(DATA / name, tmp_path)
     (tmp_path / "deck.toml").write_text(CASE)
-    line = f"verify {tmp_path / 'deck.toml'} --codes southwell-equation --out {tmp_path / 'r'} --workers 1"
+    line = (
+        f"verify {tmp_path / 'deck.toml'} --codes southwell-equation --faults none --out {tmp_path / 'r'} --workers 1"
+    )
     _, _, err = southwell(line, capsys)
     assert "BlPitch (largest 3 deg, elastodyn_main.dat)" in err
     (setting,) = results.read(tmp_path / "r" / "results.jsonl").settings

@@ -19,6 +19,7 @@ pytestmark = pytest.mark.slow
 SAMPLES, KILLS = 80, 20
 
 
+@pytest.mark.nightly
 def test_workers_killed_at_twenty_random_moments(tmp_path: Path) -> None:
     seed = random.randrange(10**6)
     print(f"seed of the moments: {seed}")  # shown if the test fails

@@ -129,7 +129,7 @@ def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("omega", [0.0, SPEED])
+@pytest.mark.parametrize("omega", [0.0, pytest.param(SPEED, marks=pytest.mark.nightly)])
 def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     """20 segments in place, five lowest frequencies (the fifth is torsion) within 0.5 %, mode by mode."""
     found = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 6)
@@ -138,7 +138,7 @@ def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     assert (mac(found, whole).diagonal()[:5] > 0.999).all()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_isolated_segments_are_too_stiff_or_too_soft() -> None:
     """Segments shorter than their chord: too stiff by per cents with rigid ties; slightly too soft with average ties."""
     whole = twisted_modes(0.0).frequencies[:5]
@@ -157,7 +157,7 @@ def test_isolated_segments_are_too_stiff_or_too_soft() -> None:
     [
         pytest.param(0.0, 0.02, 1.0, 1e-7, id="at rest, both"),
         pytest.param(SPEED, 0.02, 0.0, 1e-6, id="turning, shifted", marks=pytest.mark.slow),
-        pytest.param(SPEED, 0.0, 0.1, 1e-5, id="turning, rotated", marks=pytest.mark.slow),
+        pytest.param(SPEED, 0.0, 0.1, 1e-5, id="turning, rotated", marks=pytest.mark.nightly),
     ],
 )
 def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float, turn: float, within: float) -> None:

@@ -56,7 +56,7 @@ def in_SI(name: str) -> mb.Solution:
     return mb.solve(mechanism, guess)
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in ACCEPTED])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.nightly] if n in SLOW else []) for n in ACCEPTED])
 @settings(max_examples=3, deadline=None)
 @given(mass=DECADES, length=DECADES, time=DECADES)
 def test_frequencies_scale_with_the_units(name: str, mass: int, length: int, time: int) -> None:

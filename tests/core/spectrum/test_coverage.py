@@ -75,7 +75,7 @@ def outside(seed: int, accuracy: float, finest: float) -> list[float]:
     return list((np.maximum(error - fine.uncertainty, 0.0) / coarse.uncertainty)[judged])
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_uncertainty_covers_the_errors_of_random_blades() -> None:
     ratios = np.array([ratio for seed in range(1000, 1020) for ratio in outside(seed, 1e-4, 1e-9)])
     assert len(ratios) > 150

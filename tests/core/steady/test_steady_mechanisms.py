@@ -20,7 +20,7 @@ SLOW = {"five-bar, undamped"}
 """It takes many times as long as the others."""
 
 
-@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.slow] if n in SLOW else []) for n in CASES])
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.nightly] if n in SLOW else []) for n in CASES])
 def test_many_guesses_reach_one_state(name: str) -> None:
     """10 of 200 guesses, all of them every night (SOUTHWELL_GUESSES); for the other mechanisms, see ``guesses``."""
     mechanism, guess = CASES[name]()

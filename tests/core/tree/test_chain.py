@@ -87,7 +87,7 @@ def test_banded_chain_and_dense_mechanism_agree(blade, omega, elements, mass, me
     np.testing.assert_allclose(modal.modes(dense, 10).frequencies, banded.frequencies, rtol=1e-10)
 
 
-@pytest.mark.parametrize("elements", [2000, pytest.param(20_000, marks=pytest.mark.slow)])
+@pytest.mark.parametrize("elements", [2000, pytest.param(20_000, marks=pytest.mark.nightly)])
 def test_many_elements_lose_no_digits_at_rest(elements: int) -> None:
     """The Euler-Bernoulli beam, cos β cosh β = −1, within the stated rounding; a stiffness of 1e17 times that of the mode."""
     blade = uniform_blade("slender", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0)
@@ -100,7 +100,7 @@ def test_many_elements_lose_no_digits_at_rest(elements: int) -> None:
     assert found.rounding.max() < 1e-12
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_many_elements_lose_no_digits_at_speed() -> None:
     """Meshes whose discretisation errors are below 1e-14 agree within the stated rounding."""
     few, many = (chain_modes(discretize(PARK, n), 10.0, 6) for n in (5000, 20_000))

@@ -24,7 +24,7 @@ INSTALLED = {
 }
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)
 def test_the_defect_is_present(defect: Defect) -> None:
     if not INSTALLED[defect.script.partition("_")[0]]:

@@ -98,7 +98,7 @@ def test_spatial_loop_on_a_rotating_hub() -> None:
     assert_agreement(*spatial_loop())
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 @settings(max_examples=25)
 @given(
     kinds=st.lists(st.sampled_from(KINDS), min_size=3, max_size=5),

@@ -190,10 +190,17 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
     ("file", "mount", "first"),
     [
         ("nrel5mw/NRELOffshrBsline5MW_Blade.dat", "--length 61.5 --hub-radius 1.5", "AdjBlMs = 1.04536"),
-        ("nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat", "--hub-radius 1.5", "BeamDyn"),
+        pytest.param(
+            "nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat", "--hub-radius 1.5", "BeamDyn", marks=pytest.mark.nightly
+        ),
         ("nrel5mw/NREL_5MW_st.txt", "--hub-radius 1.5 --subset 5:1", "HAWC2"),
-        ("iea15/IEA_15MW_RWT_Blade_st_FPM.st", "--hub-radius 3.97", "HAWC2"),
-        ("iea3.4/IEA-3.4-130-RWT_ElastoDyn_blade.dat", "--length 63 --hub-radius 2", "ElastoDyn"),
+        pytest.param("iea15/IEA_15MW_RWT_Blade_st_FPM.st", "--hub-radius 3.97", "HAWC2", marks=pytest.mark.nightly),
+        pytest.param(
+            "iea3.4/IEA-3.4-130-RWT_ElastoDyn_blade.dat",
+            "--length 63 --hub-radius 2",
+            "ElastoDyn",
+            marks=pytest.mark.nightly,
+        ),
     ],
 )
 def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
