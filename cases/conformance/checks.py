@@ -176,14 +176,19 @@ def twist_sense(code: BladeAdapter) -> None:
     _leans(found, "twisted")
 
 
-def _leans(found: float, how: str) -> None:
+def precone_sense(code: BladeAdapter) -> None:
+    """Flapwise motion of a blade coned towards +z leans to −x: shapes are along the rotor's axes."""
+    _leans(_lean(ask(code, replace(PLANK, precone=0.3), 0.0, 1), axis=0), "coned", "x")
+
+
+def _leans(found: float, how: str, axis: str = "y") -> None:
     at = f"plank {how} by 0.3 rad at 0 rad/s, mode 1"
-    keep(abs(found + np.tan(0.3)) < 0.01, f"{at}: y/z = {found:.4f}, expected −tan 0.3: wrong sense?")
+    keep(abs(found + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {found:.4f}, expected −tan 0.3: wrong sense?")
 
 
-def _lean(modes: Modes) -> float:
+def _lean(modes: Modes, axis: int = 1) -> float:
     tip = modes.shapes[0, -1]
-    return float((tip[1] / tip[2]).real)
+    return float((tip[axis] / tip[2]).real)
 
 
 def coriolis_sense(code: BladeAdapter) -> None:

@@ -92,6 +92,7 @@ CHECKS = (
     Check("quarter pitch", "a pitch of 90° exchanges the planes", checks.quarter_pitch),
     Check("pitch's sense", "from y towards z", checks.pitch_sense),
     Check("twist's sense", "a constant twist equals a pitch", checks.twist_sense),
+    Check("precone's sense", "shapes lean with the coned blade, from z towards −x", checks.precone_sense),
     Check(
         "Coriolis's sense",
         "in an edgewise mode, stretch a quarter period ahead of the motion along y, of the size of a closed form",

@@ -160,7 +160,8 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
     "twist the other way": (Core(given=lambda b: replace(b, twist=-b.twist)), {"twist's sense"}),
     "pitch dropped": (Core(given=drop(pitch=0.0)), {"quarter pitch", "pitch's sense", "keeps pitch"}),
     "twist dropped": (Core(given=lambda b: replace(b, twist=0 * b.twist)), {"twist's sense", "keeps twist"}),
-    "precone dropped": (Core(given=drop(precone=0.0)), {"keeps precone"}),
+    "precone dropped": (Core(given=drop(precone=0.0)), {"precone's sense", "keeps precone"}),
+    "precone the other way": (Core(given=lambda b: replace(b, precone=-b.precone)), {"precone's sense"}),
     "hub dropped": (Core(given=drop(hub_radius=0.0)), {"keeps hub radius"}),
     "tip mass dropped": (
         Core(given=drop(tip_mass=np.zeros((6, 6)))),
