@@ -10,8 +10,8 @@ from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
 from ...core.effects import Effects
 from ...core.element.mesh import Mesh
 from ...core.steady.blade_state import Steady
+from ..diagnosis import scaled_terms
 from ..solve import core_solver
-from ..verify import core_faults
 
 Balance = Callable[..., Steady]
 
@@ -34,7 +34,7 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
     def make(right: Balance) -> Balance:
         def wrong(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
             state = right(body, omega, gravity, replace(effects, **lacks), guess)
-            return replace(state, pencil=core_faults.softened(body, state, omega, factor))
+            return replace(state, pencil=scaled_terms.softened(body, state, omega, factor))
 
         return wrong
 

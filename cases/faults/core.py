@@ -9,8 +9,8 @@ from ...core import solve
 from ...core.blade import BEND_Z, TORSION
 from ...core.element import discretize, sections
 from ...core.spectrum import mesh_solver as solution
+from ..diagnosis import blade_errors
 from ..solve import core_solver
-from ..verify import core_faults
 from .alterations import (
     at_speed,
     bladed,
@@ -68,7 +68,7 @@ FAULTS = (
         "axis shifted",
         "reference axis shifted by a quarter of the radius of gyration, without the coupling terms",
         "edgewise +2 to +3 %",
-        core_modes(core_faults.shifted),
+        core_modes(blade_errors.shifted_axis),
         PARK,
         True,
     ),

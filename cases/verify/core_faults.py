@@ -1,9 +1,7 @@
 """Core with one well-known fault at a time, which any verification must detect.
 
 Each fault is introduced from outside: in the blade, the effects, the chain, or the linearised pencil; core contains no
-code for them. The faults in the pencil remove or reverse ``softening``: the change of the centrifugal force with the
-displacement of a point from its steady position (for a point mass m the matrix ``−Ω² m`` in the two directions of the
-plane of rotation, zero along the rotor's axis).
+code for them. The faults in the pencil remove or reverse spin softening; see ``diagnosis.scaled_terms``.
 """
 
 from collections.abc import Callable
@@ -12,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...core import solve
-from ...core.blade import AXIAL, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, without_rotary_inertia
+from ...core.blade import Blade, without_rotary_inertia
 from ...core.effects import Effects
 from ...core.element.discretize import Mass, discretize
 from ...core.element.measures import Measure
@@ -20,13 +18,11 @@ from ...core.element.mesh import Mesh
 from ...core.modes import Modes
 from ...core.spectrum import mesh_solver as solution
 from ...core.spectrum.lanczos import lanczos
-from ...core.steady.blade_state import Steady
 from ...core.tree import pencil
 from ...core.tree.mode_shapes import mode_shapes
 from ...core.tree.pencil import Shape, TreePencil
-
-OFFSET = 0.25
-"""Shift of the reference axis, as a fraction of the radius of gyration √(EI_z/EA) at midspan."""
+from ..diagnosis import blade_errors
+from ..diagnosis.scaled_terms import softened
 
 STILL = np.zeros(3)
 """No gravity."""
@@ -76,27 +72,9 @@ def no_hub(blade: Blade, omega: float, elements: int, count: int, effects: Effec
     return right(replace(blade, hub_radius=0.0), omega, elements, count, effects)
 
 
-def shifted(blade: Blade) -> Blade:
-    """Sections about an axis shifted by ``OFFSET`` along y, with the parallel-axis terms but without the couplings.
-
-    About an axis shifted by e, EI_z grows by EA e², GJ by GA_y e² and the moments of inertia by m e²; stretch couples
-    with bending by EA e, and translation with rotation by m e. Omitting only the couplings makes the section too stiff.
-    Rigid shear has no such term in torsion here.
-    """
-    middle = stiffness_at(blade, blade.length / 2)[0]
-    square = OFFSET**2 * middle[BEND_Z, BEND_Z] / middle[AXIAL, AXIAL]
-    stiffness, mass = blade.stiffness.copy(), blade.mass.copy()
-    stiffness[:, BEND_Z, BEND_Z] += stiffness[:, AXIAL, AXIAL] * square
-    if np.isfinite(stiffness[:, SHEAR_Y, SHEAR_Y]).all():
-        stiffness[:, TORSION, TORSION] += stiffness[:, SHEAR_Y, SHEAR_Y] * square
-    for turning in (TORSION, BEND_Z):
-        mass[:, turning, turning] += mass[:, AXIAL, AXIAL] * square
-    return replace(blade, stiffness=stiffness, mass=mass)
-
-
 def shifted_axis(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
-    """The reference axis is shifted; see ``shifted``."""
-    return right(shifted(blade), omega, elements, count, effects)
+    """The reference axis is shifted; see ``blade_errors.shifted_axis``."""
+    return right(blade_errors.shifted_axis(blade), omega, elements, count, effects)
 
 
 def softening_reversed(blade: Blade, omega: float, elements: int, count: int, effects: Effects) -> Modes:
@@ -114,22 +92,6 @@ def _altered(blade: Blade, omega: float, elements: int, count: int, effects: Eff
     body = discretize(blade if effects.rotary_inertia else without_rotary_inertia(blade), elements)
     state = solution.balance(body, omega, STILL, effects)
     return _modes(body, softened(body, state, omega, softening), state.shape, omega, count)
-
-
-def softened(body: Mesh, state: Steady, omega: float, factor: float) -> TreePencil:
-    """The pencil of a steady state, with its spin softening multiplied by ``factor``."""
-    softening = spin_softening(body, state.shape, omega)
-    return replace(state.pencil, K=state.pencil.K + (factor - 1.0) * softening)
-
-
-def spin_softening(body: Mesh, shape: Shape, omega: float) -> np.ndarray:
-    """The part of the elements' stiffness (n, d + 6, d + 6) due to the centrifugal force of the displaced mass.
-
-    It is the stiffness at speed minus that at rest, about the same shape, of a model without geometric stiffness.
-    """
-    bare = Effects(geometric=False)
-    turning, standing = (pencil.linearize(body, shape, speed, STILL, bare).K for speed in (omega, 0.0))
-    return turning - standing
 
 
 def _modes(body: Mesh, p: TreePencil, shape: Shape, omega: float, count: int) -> Modes:
@@ -171,7 +133,7 @@ CORE_FAULTS = (
     ),
     CoreFault(
         "axis shifted",
-        f"reference axis shifted by {OFFSET:g} radii of gyration, without the coupling terms",
+        f"reference axis shifted by {blade_errors.OFFSET:g} radii of gyration, without the coupling terms",
         shifted_axis,
         right,
         PLAIN,

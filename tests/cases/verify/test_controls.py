@@ -5,6 +5,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from southwell.cases.diagnosis import blade_errors, scaled_terms
 from southwell.cases.input import library
 from southwell.cases.verify import controls, core_faults
 from southwell.core.blade import Blade
@@ -57,7 +58,7 @@ def test_softening_is_that_of_points() -> None:
 
     blade = park()
     body = discretize(blade, 4, "half_end")
-    own = core_faults.spin_softening(body, pencil.undeformed(body), OMEGA)
+    own = scaled_terms.spin_softening(body, pencil.undeformed(body), OMEGA)
     mass = np.diagonal(body.lumps, axis1=1, axis2=2)[1:, 0]
     expected = -(OMEGA**2) * mass[:, None] * [1.0, 1.0, 0.0]
     beyond = own[-1, 6:, 6:]  # of the tip, which is part of the last element
@@ -72,7 +73,7 @@ def test_a_shifted_axis_without_couplings_is_a_stiffer_beam() -> None:
     """EI_z + EA e² with e a quarter of √(EI_z/EA): frequencies times √(1 + 1/16); flapwise as before."""
     wrong, right = made(core_faults.shifted_axis, 0.0), exact(park(), 0.0)
     stiff = max(wrong.frequencies[:2])
-    assert stiff / right.frequencies[0] == pytest.approx(np.sqrt(1 + core_faults.OFFSET**2), rel=1e-4)
+    assert stiff / right.frequencies[0] == pytest.approx(np.sqrt(1 + blade_errors.OFFSET**2), rel=1e-4)
     assert min(wrong.frequencies[:2]) == pytest.approx(right.frequencies[0], rel=1e-4)
 
 

@@ -1,0 +1,124 @@
+"""Differences by arithmetic alone: a constant unit, squared frequencies, or the frequencies of other modes in the right place.
+
+They are sought before any hypothesis about the blade. A conversion is accepted only if it removes nearly all of a large
+difference.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from .spectra import Label
+
+Array = NDArray[np.float64]
+
+CONSTANTS = {
+    "2π: rad/s given as Hz": 2.0 * np.pi,
+    "1/2π: Hz given as rad/s": 0.5 / np.pi,
+    "60: per minute given as per second": 60.0,
+    "1/60: per second given as per minute": 1.0 / 60.0,
+    "60/2π: rpm given as rad/s": 30.0 / np.pi,
+    "2π/60: rad/s given as rpm": np.pi / 30.0,
+    "2": 2.0,
+    "1/2": 0.5,
+    "√2": np.sqrt(2.0),
+    "1/√2": np.sqrt(0.5),
+}
+"""Names and values of constant ratios of a program's frequencies to the solver's."""
+
+LARGE = 0.2
+"""Smallest difference (root mean square of logarithms) that arithmetic may explain."""
+
+REMAINS = 0.2
+"""Largest part of it that may remain (root mean squares)."""
+
+CLOSE = 0.06
+"""Largest root mean square that may remain (logarithms)."""
+
+
+@dataclass(frozen=True)
+class Arithmetic:
+    """A conversion: its name, and the (S, M) frequencies of the program (rad/s) and of the solver that correspond with it."""
+
+    name: str
+    given: Array
+    reference: Array
+
+
+def arithmetic(given: Array, reference: Array, labels: Sequence[Label], every: Sequence[Array]) -> Arithmetic:
+    """The best conversion; its name is empty if none removes nearly all of the difference.
+
+    Args:
+        given: (S, M) frequencies of a program, nan where unknown.
+        reference: (S, M) the solver's, under the same labels.
+        labels: (M,) of the modes.
+        every: S arrays of all frequencies of the solver, ascending.
+    """
+    plain = Arithmetic("", given, reference)
+    start = _size(plain)
+    if not start >= LARGE:
+        return plain
+    found = [
+        Arithmetic(", ".join(filter(None, (unit, order))), converted, other)
+        for unit, converted in _units(given)
+        for order, other in _orders(converted, reference, labels, every)
+    ]
+    best = min(found[1:], key=lambda one: _size(one) * (1.5 if "," in one.name else 1.0))
+    return best if _size(best) <= min(REMAINS * start, CLOSE) else plain
+
+
+def difference(given: Array, reference: Array) -> Array:
+    """(S, M) logarithms of the ratios; nan where one is unknown."""
+    with np.errstate(all="ignore"):
+        return np.log(given / reference)
+
+
+def _size(one: Arithmetic) -> float:
+    """Root mean square of the difference; infinite if fewer numbers can be compared."""
+    values = difference(one.given, one.reference)[np.isfinite(one.given)]
+    return float(np.sqrt(np.mean(values**2))) if len(values) and np.isfinite(values).all() else np.inf
+
+
+def _units(given: Array) -> list[tuple[str, Array]]:
+    """The numbers as they are, divided by constants, and as squares."""
+    out = [("", given)]
+    out += [(f"constant ratio {name}", given / value) for name, value in CONSTANTS.items()]
+    out.append(("squared frequencies, (rad/s)²", np.sqrt(given)))
+    out.append(("squared frequencies, Hz²", 2.0 * np.pi * np.sqrt(given)))
+    return out
+
+
+def _orders(given: Array, reference: Array, labels: Sequence[Label], every: Sequence[Array]) -> list[tuple[str, Array]]:
+    """The reference in other orders of the modes, of which the program may have another one, twice as many or a part."""
+    out = [("", reference)]
+    with np.errstate(all="ignore"):
+        cost = np.nanmean(np.abs(np.log(given[:, :, None] / reference[:, None, :])), axis=0)
+    if np.isfinite(cost).all() and len(labels) > 1:
+        _, order = linear_sum_assignment(cost)
+        moved = [k for k, other in enumerate(order.tolist()) if k != other]
+        if moved:
+            name = "modes in another order: " + ", ".join(f"{labels[k]} is {labels[order[k]]}" for k in moved)
+            out.append((name, reference[:, order]))
+    if all(isinstance(label, int) for label in labels):
+        numbers = np.array(labels, dtype=int) - 1
+        rules: dict[str, Callable[[NDArray[np.int64]], NDArray[np.int64]]] = {
+            "every mode twice (conjugate pairs)": lambda k: k // 2,
+            "half of the modes: the 1st, 3rd, …": lambda k: 2 * k,
+            "half of the modes: the 2nd, 4th, …": lambda k: 2 * k + 1,
+            "the first mode is missing": lambda k: k + 1,
+            "one more mode below the first": lambda k: k - 1,
+        }
+        out += [(name, _taken(every, rule(numbers))) for name, rule in rules.items()]
+    return out
+
+
+def _taken(every: Sequence[Array], places: NDArray[np.int64]) -> Array:
+    """(S, M) the frequencies at some places of all; nan beyond the last."""
+    out = np.full((len(every), len(places)), np.nan)
+    for row, values in zip(out, every, strict=True):
+        inside = (places >= 0) & (places < len(values))
+        row[inside] = values[places[inside]]
+    return out

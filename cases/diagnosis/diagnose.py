@@ -1,0 +1,186 @@
+"""Diagnosis: why the frequencies of another program differ from the solver's.
+
+First arithmetic, then the division into an offset at rest and a slope with speed, then the hypotheses, solved one by one and,
+if one does not suffice, in pairs. A cause is named only if it explains more than chance; otherwise no cause is known.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ...core.blade import Blade
+from . import spectra
+from .arithmetic import arithmetic, difference
+from .ranking import Cause, rank
+from .spectra import Change, Label, Problem
+from .split import ModeSplit, indication, split
+
+Array = NDArray[np.float64]
+
+UNCERTAINTY = 1e-4
+"""Relative differences of frequencies up to this need no cause, unless the caller knows better."""
+
+MAX_SPEEDS = 4
+"""Number of speeds that are solved: the lowest, the highest and some between."""
+
+
+@dataclass(frozen=True)
+class Diagnosis:
+    """Why a program's frequencies differ.
+
+    Attributes:
+        largest: largest relative difference, after the arithmetic; nan without a number to compare.
+        uncertainty: relative; differences up to this need no cause.
+        arithmetic: the conversion that makes the numbers comparable; empty if none is needed.
+        modes: offset at rest and slope with speed of each mode.
+        indication: what offset and slope say, in words; empty if nothing.
+        causes: the most probable causes first; whether one is known is in ``cause``.
+        ties: causes that the numbers do not tell apart from the first.
+        without_effect: hypotheses that change no frequency of this blade.
+    """
+
+    largest: float
+    uncertainty: float
+    arithmetic: str
+    modes: tuple[ModeSplit, ...]
+    indication: str
+    causes: tuple[Cause, ...]
+    ties: tuple[Cause, ...]
+    without_effect: tuple[str, ...]
+
+    @property
+    def agrees(self) -> bool:
+        """Whether nothing remains to be explained."""
+        return self.largest <= 3.0 * self.uncertainty
+
+    @property
+    def cause(self) -> Cause | None:
+        """The known cause; None if there is none, or nothing to explain."""
+        return self.causes[0] if self.causes and self.causes[0].named else None
+
+    @property
+    def sentence(self) -> str:
+        """The diagnosis in one line."""
+        if not np.isfinite(self.largest):
+            return "no diagnosis: no frequency can be compared"
+        first = f"{self.arithmetic}; then " if self.arithmetic else ""
+        if self.agrees:
+            end = f"all frequencies agree within {percent(self.largest)}"
+            return f"{first}{end}" if first else end
+        if self.cause:
+            others = "".join(f"; or {described(one.changes)}" for one in self.ties)
+            return f"{first}as core {described(self.cause.changes)} ({self._remainder(self.cause)}){others}"
+        hint = f"; {self.indication}" if self.indication else ""
+        return f"{first}no known cause of {percent(self.largest)}{hint}"
+
+    def _remainder(self, cause: Cause) -> str:
+        of = f" of {percent(self.largest)}" if cause.remains > 0.1 * self.largest else ""
+        return f"remains {percent(cause.remains)}{of}"
+
+
+def diagnose(
+    blade: Blade,
+    speeds: Sequence[float],
+    frequencies: ArrayLike,
+    modes: Sequence[Label] | None = None,
+    *,
+    by_shape: bool = False,
+    uncertainty: float = UNCERTAINTY,
+) -> Diagnosis:
+    """Explain the differences of a program's frequencies from the solver's.
+
+    Args:
+        blade: the blade that was meant.
+        speeds: (S,) rotor speeds, rad/s.
+        frequencies: (S, M) frequencies of the program, rad/s; nan where unknown.
+        modes: (M,) numbers among all modes of the blade, from 1, or names as ``flapwise 1``; by default 1 … M.
+        by_shape: whether numbers are those of the solver's modes, to which the program's were paired by shape.
+        uncertainty: relative uncertainty of the program's numbers; smaller differences are not explained.
+
+    Raises:
+        ValueError: arrays of other shapes, or nothing to compare.
+    """
+    omega, given = np.asarray(speeds, float), np.atleast_2d(np.asarray(frequencies, float))
+    labels = tuple(modes) if modes is not None else tuple(range(1, given.shape[-1] + 1))
+    if given.shape != (len(omega), len(labels)):
+        raise ValueError(f"frequencies: shape {given.shape}, expected {(len(omega), len(labels))}: speeds × modes")
+    if not np.isfinite(given).any():
+        raise ValueError("frequencies: none is finite")
+    rows = _rows(omega, given)
+    problem = Problem(blade, tuple(omega[rows].tolist()), labels, by_shape)
+    return explain(problem, given[rows], uncertainty)
+
+
+def explain(problem: Problem, given: Array, uncertainty: float = UNCERTAINTY) -> Diagnosis:
+    """As ``diagnose``, for frequencies (S, M) at all speeds of a problem, whose solutions are kept for other numbers."""
+    reference = spectra.reference(problem)
+    given = np.where(np.isfinite(reference) & (given > 0), given, np.nan)
+    if not np.isfinite(given).any():
+        return Diagnosis(np.nan, uncertainty, "", (), "", (), (), ())
+    every = [one.frequencies if one else np.zeros(0) for one in spectra.solved(problem, (), spectra.FINE)]
+    converted = arithmetic(given, reference, problem.labels, every)
+    D = difference(converted.given, converted.reference)
+    largest = float(np.nanmax(np.abs(np.expm1(D))))
+    named = _names(problem, converted.reference)
+    parts = split(named, np.array(problem.speeds), converted.given, converted.reference)
+    hint = indication(parts, max(map(abs, problem.speeds)), uncertainty)
+    if largest <= 3.0 * uncertainty or (converted.name and not _same_modes(converted.reference, reference)):
+        return Diagnosis(largest, uncertainty, converted.name, parts, hint, (), (), ())
+    ranking = rank(problem, D, uncertainty)
+    return Diagnosis(
+        largest,
+        uncertainty,
+        converted.name,
+        parts,
+        hint,
+        ranking.causes,
+        ranking.ties,
+        ranking.without_effect,
+    )
+
+
+def _rows(omega: Array, given: Array) -> list[int]:
+    """Rows to solve: those with most numbers, evenly distributed over the speeds."""
+    rows = np.flatnonzero(np.isfinite(given).any(1))
+    rows = rows[np.argsort(omega[rows], kind="stable")]
+    if len(rows) > MAX_SPEEDS:
+        wanted = np.linspace(omega[rows[0]], omega[rows[-1]], MAX_SPEEDS)
+        rows = rows[sorted({int(np.abs(omega[rows] - speed).argmin()) for speed in wanted})]
+    return rows.tolist()
+
+
+def _names(problem: Problem, reference: Array) -> list[list[str]]:
+    """(S × M) names of the solver's modes with these frequencies."""
+    out = []
+    for row, (one, named) in enumerate(
+        zip(spectra.solved(problem, (), spectra.FINE), spectra.names(problem), strict=True)
+    ):
+        line = []
+        for value in reference[row]:
+            known = one is not None and np.isfinite(value)
+            line.append(named[int(np.abs(one.frequencies - value).argmin())] if known and one is not None else "")
+        out.append(line)
+    return out
+
+
+def _same_modes(a: Array, b: Array) -> bool:
+    return bool(np.array_equal(a, b, equal_nan=True))
+
+
+def described(changes: Sequence[Change]) -> str:
+    """Hypotheses in words: ``without hub radius``, ``with 0.986 × the mass``, joined by *and*."""
+    return " and ".join(_described(name, factor) for name, factor in changes)
+
+
+def _described(name: str, factor: float) -> str:
+    if factor == 1.0:
+        return name
+    also = " (or the inverse factor on all stiffness)" if name == "mass" else ""
+    return f"with {factor:.4g} × the {name}{also}"
+
+
+def percent(value: float) -> str:
+    """A relative difference with two significant digits, in percent."""
+    return f"{np.format_float_positional(100.0 * value, precision=2, fractional=False, trim='-')} %"

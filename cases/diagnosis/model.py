@@ -1,0 +1,167 @@
+"""What the solver is given under a hypothesis: a blade, effects and a discretisation, each possibly wrong on purpose."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade, without_rotary_inertia
+from ...core.effects import ALL_EFFECTS, Effects
+from ...core.element.discretize import Mass, discretize
+from ...core.element.mesh import Mesh
+from ...core.modes import Modes
+from ...core.spectrum import mesh_solver
+from ...core.spectrum.eigen import Eigen, EigenError, UnstableError, gyroscopic
+from ...core.spectrum.lanczos import lanczos
+from ...core.spectrum.mesh_solver import Options
+from ...core.steady.blade_state import SteadyStateError
+from ...core.threads import one_thread
+from ...core.tree import pencil
+from ...core.tree.links import product
+from ...core.tree.mode_shapes import mode_shapes
+from ...core.tree.pencil import Shape, TreePencil
+from .scaled_terms import softened, stiffened
+
+Array = NDArray[np.float64]
+
+ELEMENTS = 20
+"""Elements of a solution with and without a hypothesis: the discretisation errors cancel in its effect."""
+
+SLOW = 0.05
+"""Speed at which Southwell's coefficient is taken, as a fraction of the lowest frequency at rest."""
+
+NO_ANSWER = (SteadyStateError, UnstableError, EigenError, ArithmeticError, ValueError, np.linalg.LinAlgError)
+"""A wrong model may have no steady state, be unstable or singular, or give numbers that are not finite."""
+
+
+@dataclass(frozen=True)
+class Model:
+    """A blade and how it is solved.
+
+    Attributes:
+        blade: the blade.
+        effects: physical effects included.
+        speed: factor on the rotor speed.
+        softening: factor on spin softening.
+        geometric: factor on geometric stiffness.
+        gravity: (3,) m/s², in the hub's axes.
+        mass: scheme of the inertia of elements.
+        whole_tip: whether the lumped mass at the tip is that of a whole element instead of a half.
+        elements: number of elements if a coarse mesh is the hypothesis; 0 otherwise.
+        basis: number of the blade's own lowest modes at rest that span all motion; 0: not truncated.
+        slow: whether ω² = ω₀² + φ Ω² is extrapolated from a low speed (Southwell 1921).
+    """
+
+    blade: Blade
+    effects: Effects = ALL_EFFECTS
+    speed: float = 1.0
+    softening: float = 1.0
+    geometric: float = 1.0
+    gravity: Array = field(default_factory=lambda: np.zeros(3))
+    mass: Mass = "consistent"
+    whole_tip: bool = False
+    elements: int = 0
+    basis: int = 0
+    slow: bool = False
+
+
+def solve(model: Model, speeds: Sequence[float], count: int, elements: int = ELEMENTS) -> list[Modes | None]:
+    """The lowest ``count`` modes at each speed (rad/s); None at a speed without an answer.
+
+    ``elements`` is the number of elements of a model that does not state one.
+    """
+    blade = model.blade if model.effects.rotary_inertia else without_rotary_inertia(model.blade)
+    try:
+        mesh = discretize(blade, model.elements or elements, model.mass)
+    except NO_ANSWER:
+        return [None] * len(speeds)
+    if model.whole_tip:
+        lumps = mesh.lumps.copy()
+        lumps[-1] += lumps[-1] - blade.tip_mass
+        mesh = replace(mesh, lumps=lumps)
+    turned = [model.speed * omega for omega in speeds]
+    with one_thread(), np.errstate(all="ignore"):
+        if model.slow:
+            return _extrapolated(mesh, model, turned, count)
+        if model.basis:
+            return _truncated(mesh, model, turned, count)
+        return list(_swept(mesh, model, turned, count))
+
+
+def _swept(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> Iterator[Modes | None]:
+    options = Options(count, model.effects, model.gravity)
+    start = None
+    for omega in speeds:
+        try:
+            if model.softening == model.geometric == 1.0:
+                solved = mesh_solver.solve(mesh, omega, options, start)
+                start = solved.start
+                yield solved.modes
+            else:
+                state = mesh_solver.balance(mesh, omega, model.gravity, model.effects)
+                altered = softened(mesh, state, omega, model.softening)
+                if model.geometric != 1.0:
+                    altered = stiffened(mesh, altered, state.shape, omega, model.geometric)
+                yield _modes(mesh, state.shape, altered, lanczos(altered, count), omega)
+        except NO_ANSWER:
+            yield None
+
+
+def _modes(mesh: Mesh, shape: Shape, p: TreePencil, lowest: Eigen, omega: float) -> Modes:
+    shapes = mode_shapes(mesh, shape, pencil.on_nodes(p, lowest.vectors))
+    return Modes(omega, lowest.frequencies, shapes, mesh.elements)
+
+
+def _truncated(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> list[Modes | None]:
+    """Modes in the basis of the ``model.basis`` lowest modes at rest (Ritz), about the prestressed undeformed blade.
+
+    The coordinates are differences of twists along the blade, so that the basis includes the shortening of a bent blade.
+    """
+    try:
+        rest = mesh_solver.solve(mesh, 0.0, Options(model.basis))
+    except NO_ANSWER:
+        return [None] * len(speeds)
+    phase = np.exp(-1j * np.angle(rest.vectors[np.abs(rest.vectors).argmax(0), range(rest.vectors.shape[1])]))
+    basis = (rest.vectors * phase).real.T
+    basis = (
+        basis
+        / np.sqrt(np.einsum("mi,mi->m", basis, product(rest.state.pencil.M, 1.0, rest.state.pencil.links, basis)))[
+            :, None
+        ]
+    )
+    effects = replace(model.effects, prestretch=False)
+    out: list[Modes | None] = []
+    for omega in speeds:
+        try:
+            state = mesh_solver.balance(mesh, omega, model.gravity, effects)
+            p = state.pencil
+            M, C, K = (basis @ product(a, sign, p.links, basis).T for a, sign in ((p.M, 1.0), (p.C, -1.0), (p.K, 1.0)))
+            M, C, K = 0.5 * (M + M.T), 0.5 * (C - C.T), 0.5 * (K + K.T)
+            small = gyroscopic(M, C, K, min(count, model.basis))
+            out.append(_modes(mesh, state.shape, p, Eigen(small.frequencies, basis.T @ small.vectors), omega))
+        except NO_ANSWER:
+            out.append(None)
+    return out
+
+
+def _extrapolated(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> list[Modes | None]:
+    """Southwell's equation with the coefficients at a low speed, in the order of the frequencies."""
+    try:
+        rest, *_ = _swept(mesh, replace(model, softening=1.0), [0.0], count)
+        if rest is None:
+            return [None] * len(speeds)
+        low = SLOW * float(rest.frequencies[0])
+        (moved,) = _swept(mesh, model, [low], count)
+    except NO_ANSWER:
+        return [None] * len(speeds)
+    if moved is None:
+        return [None] * len(speeds)
+    slope = (moved.frequencies**2 - rest.frequencies**2) / low**2
+    out: list[Modes | None] = []
+    for omega in speeds:
+        square = rest.frequencies**2 + slope * omega**2
+        order = np.argsort(square)
+        lowest = np.sqrt(np.maximum(square[order], 0.0))
+        out.append(Modes(omega, lowest, moved.shapes[order], mesh.elements))
+    return out

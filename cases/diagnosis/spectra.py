@@ -1,0 +1,153 @@
+"""The frequencies of a model under the labels of another program's modes, and the effect of each hypothesis on them."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.modes import Modes
+from ...core.participation import families, numbered, participation
+from ..judge.pairing import aligned, pair, weights
+from ..judge.spectrum import of_blade
+from . import model
+from .hypotheses import ALL, Hypothesis
+from .model import ELEMENTS, Model
+
+Array = NDArray[np.float64]
+
+Label = int | str
+"""A mode: its number among all modes of the blade, from 1, or its family and ordinal, as ``flapwise 1``."""
+
+FINE = 3 * ELEMENTS
+"""Elements of the solution without a hypothesis that the numbers are compared with."""
+
+EXTRA = 4
+"""Modes solved above the highest label."""
+
+LEAST_MAC = 0.5
+"""Smallest MAC of a mode with and without a hypothesis; a wrong model may change shapes."""
+
+Change = tuple[str, float]
+"""A hypothesis by its name, and its factor (1 if it is not fitted)."""
+
+
+@dataclass(frozen=True, eq=False)
+class Problem:
+    """A blade, speeds and modes, under which numbers of another program are known; compared by identity.
+
+    Attributes:
+        blade: the blade.
+        speeds: (S,) rad/s.
+        labels: (M,) of the modes.
+        by_shape: whether numbers are those of the solver's modes, to which the other program's were paired by shape.
+        hypotheses: by name.
+    """
+
+    blade: Blade
+    speeds: tuple[float, ...]
+    labels: tuple[Label, ...]
+    by_shape: bool = False
+    hypotheses: dict[str, Hypothesis] = field(default_factory=lambda: {one.name: one for one in ALL})
+
+    @property
+    def count(self) -> int:
+        """Number of modes to solve."""
+        numbers = [label if isinstance(label, int) else 2 * int(label.split()[1]) for label in self.labels]
+        return max(*numbers, len(self.labels)) + EXTRA
+
+
+def reference(problem: Problem) -> Array:
+    """(S, M) frequencies of the blade without a hypothesis, rad/s; nan for a mode or speed without an answer."""
+    return labelled(problem, solved(problem, (), FINE), problem.blade)
+
+
+def effect(problem: Problem, changes: tuple[Change, ...]) -> Array:
+    """(S, M) natural logarithm of the ratio of the frequencies with and without some hypotheses; nan without an answer."""
+    return _effect(problem, changes)
+
+
+@lru_cache(maxsize=4096)
+def _effect(problem: Problem, changes: tuple[Change, ...]) -> Array:
+    changed = changed_model(problem, changes)
+    if changed is None:
+        return np.full((len(problem.speeds), len(problem.labels)), np.nan)
+    if _unchanged(changed, Model(problem.blade)):
+        return np.zeros((len(problem.speeds), len(problem.labels)))
+    base = reference(problem) if changed.elements else _plain(problem)
+    wrong = labelled(problem, model.solve(changed, problem.speeds, problem.count), changed.blade)
+    with np.errstate(all="ignore"):
+        return np.log(wrong / base)
+
+
+def _unchanged(a: Model, b: Model) -> bool:
+    """Whether two models are equal."""
+    ours, theirs = vars(a) | vars(a.blade), vars(b) | vars(b.blade)
+    same_values = (np.array_equal(ours[name], theirs[name]) for name in ours if name != "blade")
+    return all(same_values)
+
+
+@lru_cache(maxsize=64)
+def _plain(problem: Problem) -> Array:
+    return labelled(problem, solved(problem, (), ELEMENTS), problem.blade)
+
+
+def changed_model(problem: Problem, changes: Sequence[Change]) -> Model | None:
+    """The model with some hypotheses, one after the other; None if the blade is then invalid."""
+    out = Model(problem.blade)
+    try:
+        with np.errstate(all="ignore"):
+            for name, factor in changes:
+                out = problem.hypotheses[name].change(out, factor)
+    except model.NO_ANSWER:
+        return None
+    return out
+
+
+@lru_cache(maxsize=64)
+def solved(problem: Problem, changes: tuple[Change, ...], elements: int) -> list[Modes | None]:
+    """The modes at each speed."""
+    changed = changed_model(problem, changes)
+    assert changed is not None
+    return model.solve(changed, problem.speeds, problem.count, elements)
+
+
+def names(problem: Problem) -> list[tuple[str, ...]]:
+    """Names of the solver's modes at each speed, as ``flapwise 1``; empty at a speed without an answer."""
+    return [_named(one, problem.blade) if one else () for one in solved(problem, (), FINE)]
+
+
+def _named(modes: Modes, blade: Blade) -> tuple[str, ...]:
+    return numbered(families(participation(aligned(modes, weights(blade)), blade)))
+
+
+def labelled(problem: Problem, answers: Sequence[Modes | None], blade: Blade) -> Array:
+    """(S, M) frequencies of answers under the problem's labels; ``blade`` is the one that was solved."""
+    out = np.full((len(problem.speeds), len(problem.labels)), np.nan)
+    by_name = any(isinstance(label, str) for label in problem.labels)
+    for row, own in enumerate(answers):
+        if own is None:
+            continue
+        named = _named(own, blade) if by_name else ()
+        partners = _partners(problem, row, own) if problem.by_shape else {}
+        for column, label in enumerate(problem.labels):
+            if isinstance(label, str):
+                place = named.index(label) if label in named else None
+            else:
+                place = partners.get(label) if problem.by_shape else label - 1
+            if place is not None and place < len(own.frequencies):
+                out[row, column] = own.frequencies[place]
+    return out
+
+
+def _partners(problem: Problem, row: int, own: Modes) -> dict[int, int | None]:
+    """Index of the partner of each of the solver's modes, by its number."""
+    base = solved(problem, (), FINE)[row]
+    if base is None:
+        return {}
+    numbers = [label for label in problem.labels if isinstance(label, int) and label <= len(base.frequencies)]
+    ours, theirs = of_blade(base, weights(problem.blade)), of_blade(own)
+    found = pair(ours, theirs, [number - 1 for number in numbers], LEAST_MAC)
+    return {number: partner.mode for number, partner in zip(numbers, found, strict=True)}
