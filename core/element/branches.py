@@ -35,7 +35,9 @@ def attached(
         branch: nodes and elements; its node 0 becomes the joint's other end, with the inertia given there.
         at_a: (4, 4) pose of the joint's frame in the tree's node.
         at_b: (4, 4) the same in the branch's node 0; the identity by default.
-        stiffness: (6,) of the joint's coordinates, see ``JointLink``; clamped by default.
+        stiffness: (6,) of the joint's coordinates, displacements along x, y, z of its frame, then rotations about x, y, z in
+            sequence, N/m and N m/rad: ``inf`` clamps one, 0 leaves it free; clamped by default. Every coordinate that is not
+            clamped is a link.
 
     Raises:
         ValueError: elements of different strain measures, or with mass in one part and lumped in the other.
@@ -43,29 +45,40 @@ def attached(
     a, b = tree.beams, branch.beams
     if tree.elements and branch.elements and (a.law.measure, a.inner) != (b.law.measure, b.inner):
         raise ValueError("branch: its elements have another strain measure or mass than the tree's")
-    end = np.eye(4) if at_b is None else at_b
-    links, nodes = len(tree.parent), len(tree.nodes)
-    root = tree.nodes[node] @ at_a @ sp.inverse(end)  # pose of the branch's node 0
-    moved = root @ sp.inverse(branch.nodes[0])
-    joint = JointLink(links, at_a, end, stiffness)
-    none = np.zeros((1, 6))
+    screws = np.eye(6)[np.isfinite(stiffness)]
+    springs = stiffness[np.isfinite(stiffness)]
+    if not len(springs):
+        screws, springs = np.zeros((1, 6)), np.zeros(1)
+    links, nodes, count = len(tree.parent), len(tree.nodes), len(springs)
+    to_branch = np.eye(4) if at_b is None else sp.inverse(at_b)
+    between = np.tile(np.eye(4), (count, 1, 1))  # of the joint's links
+    between[0] = at_a
+    between[-1] = between[-1] @ to_branch
+    screws[0] = sp.adjoint(at_a) @ screws[0]
+    frame = tree.nodes[node] @ at_a
+    moved = frame @ to_branch @ sp.inverse(branch.nodes[0])
+    none, inside = np.zeros((count, 6)), count - 1  # nodes between the joint's links, without mass
     beams = Beams(
-        law=joined([a.law, constant_strain(b.law.measure, (at_a @ sp.inverse(end))[None]), b.law]),
-        stiffness=np.concatenate([a.stiffness, np.zeros((1, 6, 6)), b.stiffness]),
-        points=_together(a.points, b.points, links + 1),
+        law=joined([a.law, constant_strain(b.law.measure, between), b.law]),
+        stiffness=np.concatenate([a.stiffness, np.zeros((count, 6, 6)), b.stiffness]),
+        points=_together(a.points, b.points, links + count),
         preload=np.concatenate([a.preload, none, b.preload]),
         inner_preload=np.concatenate([a.inner_preload, none, b.inner_preload]),
     )
     return Mesh(
-        nodes=np.concatenate([tree.nodes, moved @ branch.nodes]),
-        lumps=np.concatenate([tree.lumps, branch.lumps]),
+        nodes=np.concatenate([tree.nodes, np.tile(frame, (inside, 1, 1)), moved @ branch.nodes]),
+        lumps=np.concatenate([tree.lumps, np.zeros((inside, 6, 6)), branch.lumps]),
         beams=beams,
-        samples=_together(tree.samples, branch.samples, links + 1),
+        samples=_together(tree.samples, branch.samples, links + count),
         scale=max(tree.scale, branch.scale),
-        force=np.concatenate([tree.force, branch.force @ moved[:3, :3].T]),
-        corner=np.concatenate([tree.corner, np.eye(4)[None], branch.corner]),
-        parent=np.concatenate([tree.parent, [node], branch.parent + nodes]),
-        joints=(*tree.joints, joint, *(replace(j, link=j.link + links + 1) for j in branch.joints)),
+        force=np.concatenate([tree.force, np.zeros((inside, 3)), branch.force @ moved[:3, :3].T]),
+        corner=np.concatenate([tree.corner, np.tile(np.eye(4), (count, 1, 1)), branch.corner]),
+        parent=np.concatenate([tree.parent, [node], nodes + np.arange(inside), branch.parent + nodes + inside]),
+        joints=(
+            *tree.joints,
+            *(JointLink(links + k, screws[k], float(springs[k])) for k in range(count)),
+            *(replace(j, link=j.link + links + count) for j in branch.joints),
+        ),
     )
 
 

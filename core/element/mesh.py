@@ -15,23 +15,23 @@ Array = NDArray[Any]
 
 @dataclass(frozen=True)
 class JointLink:
-    """A link of a mesh that is a joint: displacements along x, y, z of its frame, then rotations about x, y, z in sequence.
+    """A link of a mesh that is a joint with one coordinate q, like the links of a mechanism; or a rigid connection.
 
     Attributes:
         link: its index.
-        at_a, at_b: (4, 4) pose of the joint's frame in the nodes at both ends.
-        stiffness: (6,) of its coordinates, N/m and N m/rad: ``inf`` clamps one, 0 leaves it free.
+        screw: (6,) twist ρ of its end b relative to end a, in the axes of end a, at a rate of 1; zero if rigid.
+        stiffness: of the spring on its coordinate, N/m or N m/rad; 0 without one.
     """
 
     link: int
-    at_a: Array
-    at_b: Array
-    stiffness: Array
+    screw: Array
+    stiffness: float = 0.0
 
-    @property
-    def clamped(self) -> NDArray[np.bool_]:
-        """(6,) whether each coordinate is clamped."""
-        return np.isinf(self.stiffness)
+    @cached_property
+    def rate(self) -> Array:
+        """(6,) the rate of q is its product with ρ."""
+        square = self.screw @ self.screw
+        return self.screw / square if square else self.screw
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ from ..element import beams as bm
 from ..element import measures
 from ..element.mesh import Mesh
 from ..space import spatial as sp
-from ..tree import elimination, joint_links
+from ..tree import elimination
 from ..tree.links import twists
 from ..tree.pencil import Shape, TreePencil, assembled, linearize, undeformed
 from .continuation import extrapolated, follow
@@ -200,17 +200,15 @@ def displaced(mesh: Mesh, shape: Shape, step: Array, relative: Array) -> Shape:
     """
     moved = kernels.displaced(mesh.parent, np.ascontiguousarray(shape.relative), np.ascontiguousarray(step))
     rho = relative.reshape(step.shape)[:, :6]
-    joints = shape.joints.copy()
-    for q, joint in zip(joints, mesh.joints, strict=True):
-        free = ~joint.clamped
-        q[free] += np.linalg.lstsq(joint_links.twists(joint, q)[:, free], rho[joint.link], rcond=None)[0]
+    joints = shape.joints + np.array([joint.rate @ rho[joint.link] for joint in mesh.joints])
     return assembled(mesh, moved, shape.beta + step[:, 6:], joints)
 
 
 def coordinates(mesh: Mesh, shape: Shape) -> Array:
     """(n, 6 or 12) twists that take the undeformed relative poses to those of a shape, or coordinates of joints; and β."""
     out = np.concatenate([sp.log(sp.inverse(mesh.between) @ shape.relative), shape.beta], axis=1)
-    out[[joint.link for joint in mesh.joints], :6] = shape.joints
+    for joint, q in zip(mesh.joints, shape.joints, strict=True):
+        out[joint.link, :6] = q, 0.0, 0.0, 0.0, 0.0, 0.0
     return out
 
 
@@ -226,7 +224,7 @@ def extrapolate(mesh: Mesh, earlier: Mapping[float, Array], omega: float) -> Sha
 def _shape(mesh: Mesh, values: Array) -> Shape:
     """The shape with given ``coordinates``."""
     relative = mesh.between @ sp.exp(np.ascontiguousarray(values[:, :6]))
-    return assembled(mesh, relative, values[:, 6:], values[[joint.link for joint in mesh.joints], :6])
+    return assembled(mesh, relative, values[:, 6:], values[[joint.link for joint in mesh.joints], 0])
 
 
 def carried_over(mesh: Mesh, shape: Shape, finer: Mesh) -> Shape:
@@ -237,7 +235,7 @@ def carried_over(mesh: Mesh, shape: Shape, finer: Mesh) -> Shape:
         shape: its shape.
         finer: the finer mesh.
     """
-    first = len(mesh.joints)  # without the joint at the root, which has no length
+    first = len(mesh.joints)  # without the joint at the root, whose links have no length
     twists = sp.log(shape.nodes[first:] @ sp.inverse(mesh.nodes[first:]))
     at = CubicSpline(_lengths(mesh)[first:], twists)(_lengths(finer)[first:])
     nodes = finer.nodes.copy()

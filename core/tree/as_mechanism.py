@@ -1,16 +1,19 @@
 """A mesh as a general mechanism: hub on a revolute, bodies joined by elastic connections (as in Park et al. 2010).
 
-A joint is an elastic connection too, without a beam: its clamped coordinates are prescribed as zero (Φᴹ), and its springs act
-on the others.
+A joint of the mesh is a revolute or prismatic joint with a spring, or rigid.
 """
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ..element.beams import Beams, Points
 from ..element.measures import part
 from ..element.mesh import Mesh
 from ..mechanism.description import GROUND, Beam, Body, CoordinateSpring, Load, Mechanism, Motion
-from ..mechanism.joints import SCREWS, Joint
+from ..mechanism.joints import SCREWS, Joint, Kind, at
+from ..space import spatial as sp
+
+Array = NDArray[np.float64]
 
 
 def mechanism(mesh: Mesh, omega: float, gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)) -> Mechanism:
@@ -23,36 +26,42 @@ def mechanism(mesh: Mesh, omega: float, gravity: tuple[float, float, float] = (0
     """
     n, between = len(mesh.nodes) - 1, mesh.between
     bodies = (Body("hub"), *(Body(f"body {k}", mesh.lumps[k]) for k in range(n + 1)))
-    frames = {joint.link: (joint.at_a, joint.at_b) for joint in mesh.joints}
     joints = [
         Joint("hub", "revolute", GROUND, "hub"),
         Joint("root", "fixed", "hub", "body 0", at_parent=mesh.nodes[0]),
     ]
-    for k, a in enumerate(mesh.parent):
-        at_a, at_b = frames.get(k, (between[k], np.eye(4)))
-        joints.append(Joint(f"element {k + 1}", "elastic", f"body {a}", f"body {k + 1}", at_parent=at_a, at_child=at_b))
-    motions = [Motion("hub.rz", 0.0, omega)]
     springs: list[CoordinateSpring] = []
-    for joint in mesh.joints:
-        for (name, _), stiffness in zip(SCREWS["elastic"], joint.stiffness.tolist(), strict=True):
-            coordinate = f"element {joint.link + 1}.{name}"
-            if np.isinf(stiffness):
-                motions.append(Motion(coordinate, 0.0))
-            elif stiffness:
-                springs.append(CoordinateSpring(coordinate, stiffness))
+    by_link = {joint.link: joint for joint in mesh.joints}
+    for k, a in enumerate(mesh.parent):
+        name, parent, child = f"element {k + 1}", f"body {a}", f"body {k + 1}"
+        if k not in by_link:
+            joints.append(Joint(name, "elastic", parent, child, at_parent=between[k]))
+            continue
+        kind, frame = _along(by_link[k].screw)
+        joints.append(Joint(name, kind, parent, child, at_parent=frame, at_child=sp.inverse(between[k]) @ frame))
+        if by_link[k].stiffness:
+            springs.append(CoordinateSpring(f"{name}.{SCREWS[kind][0][0]}", by_link[k].stiffness))
     return Mechanism(
         bodies=bodies,
         joints=tuple(joints),
-        motions=tuple(motions),
+        motions=(Motion("hub.rz", 0.0, omega),),
         coordinate_springs=tuple(springs),
         beams=tuple(
             Beam(f"body {a}", f"body {k + 1}", single_element(mesh.beams, k), at_b=mesh.corner[k], axes_of="hub")
             for k, a in enumerate(mesh.parent)
-            if k not in frames
+            if k not in by_link
         ),
         loads=tuple(Load(f"body {k}", f, "hub") for k, f in enumerate(mesh.force) if f.any()),
         gravity=gravity,
     )
+
+
+def _along(screw: Array) -> tuple[Kind, Array]:
+    """The joint whose screw (6,) is given in the axes of its parent, and its frame (4, 4) there."""
+    linear, angular = screw[:3], screw[3:]
+    if angular.any():
+        return "revolute", at(*np.cross(angular, linear), axis=angular)
+    return ("prismatic", at(axis=linear)) if linear.any() else ("fixed", np.eye(4))
 
 
 def single_element(beams: Beams, k: int) -> Beams:

@@ -14,7 +14,7 @@ from ..compiled import kernels
 from ..effects import ALL_EFFECTS, Effects
 from ..element.mesh import Mesh
 from ..space import spatial as sp
-from . import elimination, joint_links
+from . import elimination
 from .elimination import Factor
 from .links import Links, allowed, gathered, product, twists
 
@@ -53,25 +53,25 @@ class Shape:
         relative: (n, 4, 4) pose of each node in the frame of its parent. Redundant with ``nodes``, but
             differences of poses lose the last digits of the strain: at radius R, with axial stiffness EA and element length
             h, the force would be wrong by EA R/h times the rounding unit.
-        joints: (j, 6) coordinates of the joints.
+        joints: (j,) coordinates of the joints.
     """
 
     nodes: Array
     beta: Array
     relative: Array
-    joints: Array = field(default_factory=lambda: np.zeros((0, 6)))
+    joints: Array = field(default_factory=lambda: np.zeros(0))
 
 
 def undeformed(mesh: Mesh) -> Shape:
     """The undeformed shape."""
     beta = np.zeros((len(mesh.nodes) - 1, mesh.beams.inner))
-    return Shape(mesh.nodes, beta, mesh.between, np.zeros((len(mesh.joints), 6)))
+    return Shape(mesh.nodes, beta, mesh.between, np.zeros(len(mesh.joints)))
 
 
 def assembled(mesh: Mesh, relative: Array, beta: Array, joints: Array) -> Shape:
-    """The shape with these relative poses (n, 4, 4), in which those of joints are replaced by their coordinates (j, 6)."""
+    """The shape with these relative poses (n, 4, 4), in which those of joints are replaced by their coordinates (j,)."""
     for joint, q in zip(mesh.joints, joints, strict=True):
-        relative[joint.link] = joint_links.pose(joint, q)
+        relative[joint.link] = sp.exp(joint.screw * q) @ mesh.between[joint.link]
     return Shape(kernels.placed(mesh.parent, mesh.nodes[0], relative), beta, relative, joints)
 
 
@@ -110,16 +110,14 @@ def _with_joints(
     """Add the joints' forces to the residual (n, d) and their stiffness to K and ``spring``; the links with what they clamp."""
     clamped = np.zeros((len(residual), 6, 6))
     for joint, q in zip(mesh.joints, shape.joints, strict=True):
-        k = joint.link
-        carried = residual[k, :6].copy() if geometric else np.zeros(6)
-        its = joint_links.response(joint, q, carried, mesh.beams.preload[k])
-        clamped[k], spring[k] = its.clamped, its.stiffness
-        residual[k, :6] += its.force
-        turning = sp.coadjoint(
-            -carried
-        )  # of the joint's wrench on end b, which follows end a: see add_elastic in beam.hpp
+        k, force = joint.link, joint.stiffness * q * joint.rate
+        clamped[k] = np.eye(6) - np.outer(joint.screw, joint.rate)
+        spring[k] = joint.stiffness * np.outer(joint.rate, joint.rate)
+        # the wrench on end b follows end a: see add_elastic in beam.hpp
+        turning = sp.coadjoint(-residual[k, :6]) if geometric else np.zeros((6, 6))
         K[k, :6, 6:12] += turning
         K[k, 6:12, 6:12] += turning
+        residual[k, :6] += force
     return Links(links.parent, links.to_child, clamped)
 
 
@@ -129,21 +127,20 @@ def on_nodes(p: TreePencil, vectors: NDArray[np.complex128]) -> Array:
 
 
 def has_free_motion(p: TreePencil) -> bool:
-    """Whether a joint allows a rigid-body motion without stiffness, apart from rounding."""
-    if not p.links.clamped.size:
+    """Whether the joints allow the parts that they connect to move as rigid bodies without stiffness, apart from rounding."""
+    clamped = p.links.clamped
+    joints = np.flatnonzero(clamped.any(axis=(1, 2)) & (np.trace(clamped, axis1=1, axis2=2) < 5.5))
+    if not len(joints):
         return False
-    return any(_rigid_motion_is_free(p, int(k)) for k in np.flatnonzero(p.links.clamped.any(axis=(1, 2))))
-
-
-def _rigid_motion_is_free(p: TreePencil, link: int) -> bool:
-    """Whether the joint at a link allows all that lies beyond to move without stiffness."""
-    clamped = p.links.clamped[link]
-    free = np.linalg.svd(np.eye(6) - clamped)[0][:, : 6 - round(float(np.trace(clamped)))]
-    x = np.zeros((free.shape[1], len(p.links.parent), len(p.residual) // len(p.links.parent)))
-    x[:, link, :6] = free.T  # no strain beyond the joint
+    x = np.zeros((len(joints), len(p.links.parent), len(p.residual) // len(p.links.parent)))
+    x[np.arange(len(joints)), joints, :6] = np.linalg.svd(np.eye(6) - clamped[joints])[0][
+        :, :, 0
+    ]  # no strain elsewhere
     x = x.reshape(len(x), -1)
     K = x @ product(p.K, 1.0, p.links, x).T
     moved = np.concatenate([np.zeros((len(x), 1, 6)), twists(p.links, x)[..., :6]], axis=1)
     begins = np.abs(moved[:, p.links.parent])
-    cancelled = np.einsum("mki,kij,mkj->", begins, np.abs(p.K[:, :6, :6]), begins)
-    return bool(np.linalg.eigvalsh(0.5 * (K + K.T)).min(initial=np.inf) <= _ROUNDING * cancelled)
+    cancelled = np.sqrt(np.einsum("mki,kij,mkj->m", begins, np.abs(p.K[:, :6, :6]), begins))
+    unit = np.where(cancelled > 0, cancelled, 1.0)
+    scaled = 0.5 * (K + K.T) / unit[:, None] / unit
+    return bool(np.linalg.eigvalsh(scaled).min() <= _ROUNDING)

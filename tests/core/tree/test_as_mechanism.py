@@ -12,6 +12,7 @@ from southwell.cases.input import library
 from southwell.core import solve
 from southwell.core.blade import Blade
 from southwell.core.element.discretize import Mass, discretize
+from southwell.core.element.mesh import JointLink
 from southwell.core.mechanism.description import Body, Load, Mechanism, MechanismError, Motion, inertia
 from southwell.core.mechanism.joints import Joint
 from southwell.core.space import spatial as sp
@@ -21,6 +22,7 @@ from southwell.core.steady import blade_state as steady
 from southwell.core.tree import as_mechanism
 from southwell.tests.support.beams import PARK, curved, tapered
 from southwell.tests.support.dense import dense
+from southwell.tests.support.units import random_blade
 
 BLADES = {v.name: v for case in library.everything()[0].values() for v in case.variants}
 AGREE = 1e-9
@@ -65,11 +67,27 @@ def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: s
     assert_agreement(blade, 2.5, 10, gravity, load=load, mass=mass)
 
 
-def test_clamped_coordinates_of_a_root_joint_are_prescribed() -> None:
-    blade = replace(PARK, root=np.array([CLAMPED] * 4 + [0.0, 0.0]), twist=np.array([1.2, 0.0]))
+def test_a_link_of_a_joint_has_one_coordinate() -> None:
+    """Clamped coordinates have no link; a hinge off the node's origin keeps its axis."""
+    blade = replace(PARK, root=np.array([CLAMPED] * 4 + [0.0, 7.0]), twist=np.array([1.2, 0.0]))
     built = as_mechanism.mechanism(discretize(blade, 3), 10.0)
-    prescribed = {m.coordinate for m in built.motions}
-    assert prescribed == {"element 1.rx", "element 1.x", "element 1.y", "element 1.z", "hub.rz"}
+    assert [joint.kind for joint in built.joints] == ["revolute", "fixed", "revolute", "revolute", *["elastic"] * 3]
+    assert [(s.coordinate, s.stiffness) for s in built.coordinate_springs] == [("element 2.rz", 7.0)]
+    offset = JointLink(0, np.array([0.0, 0.0, 2.0, 0.0, 1.0, 0.0]))  # about y, through the point 2 m along x
+    kind, frame = as_mechanism._along(offset.screw)
+    assert kind == "revolute"
+    np.testing.assert_allclose(frame[:3, 3], [2.0, 0.0, 0.0])
+    np.testing.assert_allclose(frame[:3, 2], [0.0, 1.0, 0.0])
+
+
+def test_a_root_on_many_springs_is_that_of_the_mechanism() -> None:
+    """Three rotations and a displacement on springs, coned and twisted: the two solvers agree to rounding."""
+    blade, omega = random_blade(np.random.default_rng(1))
+    root = np.array([5.07e6, CLAMPED, CLAMPED, 4.78e9, 1.71e8, 1.68e9])
+    mesh = discretize(replace(blade, root=root), 16)
+    expected = modes(linearize(as_mechanism.mechanism(mesh, omega)), 6).frequencies
+    computed = solve.mesh_modes(replace(blade, root=root), omega, 16, 6).frequencies
+    np.testing.assert_allclose(computed, expected, rtol=1e-12)
 
 
 def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
