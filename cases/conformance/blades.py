@@ -187,6 +187,9 @@ def _body(mass: float, moment: float = 0.0, offset: float = 0.0) -> Array:
 LUMP = _body(0.5 * MASS * LENGTH)
 LUMPED = replace(BEAM, tip_mass=LUMP)
 
+BESIDE = _body(LUMP[0, 0], 0.0, 0.4)
+"""A tip mass with its centre beside the axis, along y."""
+
 PROPERTIES = (
     Property("hub radius", replace(BEAM, hub_radius=1.0)),
     Property("unlike planes", PLANK),
@@ -196,7 +199,7 @@ PROPERTIES = (
     Property("precone", replace(BEAM, precone=0.4)),
     Property("tip mass", LUMPED),
     Property("tip mass's moments of inertia", replace(BEAM, tip_mass=_body(LUMP[0, 0], 0.5)), LUMPED),
-    Property("tip mass's offset", replace(BEAM, tip_mass=_body(LUMP[0, 0], 0.0, 0.4)), LUMPED),
+    Property("tip mass's offset", replace(BEAM, tip_mass=BESIDE), LUMPED),
     Property("sweep", _arc(1)),
     Property("prebend", _arc(2)),
     Property("bend–twist coupling", _joined(TORSION, BEND_Y)),

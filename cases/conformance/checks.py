@@ -244,6 +244,16 @@ def tip_mass_pulls(code: BladeAdapter) -> None:
     agrees(code, known.WITH_TIP_MASS, known.TIP_SPEED, known.TIP_TURNING, axis=2)
 
 
+def tip_mass_axes(code: BladeAdapter) -> None:
+    """A tip mass beside the axis is given in the tip section's axes: with the whole blade twisted, it turns as with pitch."""
+    blade = replace(PLANK, tip_mass=known.BESIDE)
+    twisted, pitched = (
+        ask(code, b, known.SPEED, 0) for b in (replace(blade, twist=np.array([0.5, 0.5])), replace(blade, pitch=0.5))
+    )
+    at = f"plank with an offset tip mass at {known.SPEED:g} rad/s, twisted by 0.5 rad, against pitched"
+    close(twisted.frequencies, pitched.frequencies, at, same(code))
+
+
 def coupled_planes(code: BladeAdapter) -> None:
     """Bending stiffness with a product EI_yz."""
     agrees(code, known.coupled_plank(), 0.0, float(CANTILEVER[0]))

@@ -101,6 +101,7 @@ CHECKS = (
     Check("torsion", "a soft shaft's first frequency, in the fourth column", checks.torsion),
     Check("tip mass at rest", "closed form", checks.tip_mass_weighs),
     Check("tip mass rotating", "its tension: Bir's printed frequency", checks.tip_mass_pulls),
+    Check("tip mass's axes", "twist at the tip turns an offset tip mass as pitch does", checks.tip_mass_axes),
     Check("coupled planes", "refused, or the frequencies of the principal planes", checks.coupled_planes),
     Check("kink", "a corner of the curve: refused, or the closed form of two beams at right angles", checks.corner),
     Check("hinged root", "refused, or a straight line at Ω", checks.hinged_root),

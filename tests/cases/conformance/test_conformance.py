@@ -14,6 +14,7 @@ from southwell.core import solve
 from southwell.core.blade import Blade
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import Modes
+from southwell.core.space.spatial import rotation
 from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, DIGITS, BladeAdapter, CodeError, Independence
 from southwell.tests.support.codes import BLADE_CODES
@@ -141,6 +142,11 @@ def first_column_of_tip_mass(blade: Blade) -> Blade:
     return replace(blade, tip_mass=np.diag([m, m, m, 0.0, 0.0, 0.0]))
 
 
+def tip_mass_in_the_axes_of_the_blade(blade: Blade) -> Blade:
+    R = np.kron(np.eye(2), rotation(0, blade.twist[-1]))
+    return replace(blade, tip_mass=R.T @ blade.tip_mass @ R)
+
+
 FAULTS: dict[str, tuple[Core, set[str]]] = {
     "hertz": (Core(returned=lambda m: replace(m, frequencies=m.frequencies / (2 * np.pi))), {"cantilever at rest"}),
     "descending": (
@@ -167,6 +173,7 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
         Core(given=drop(tip_mass=np.zeros((6, 6)))),
         {"tip mass at rest", "tip mass rotating", "keeps tip mass"},
     ),
+    "tip mass in the blade's axes": (Core(given=tip_mass_in_the_axes_of_the_blade), {"tip mass's axes"}),
     "tip mass a point": (
         Core(given=first_column_of_tip_mass),
         {"keeps tip mass's offset", "keeps tip mass's moments of inertia"},
