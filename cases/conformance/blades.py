@@ -18,6 +18,9 @@ SHEAR, SHORT = 100.0, 20.0
 """Shear stiffness in EI / L² and slenderness of the short beam, typical of a solid. Shear changes its first frequency by
 4 %. In a ten times softer solid, the clamp would restrain warping over most of its length."""
 
+SHEAR_Y = 300.0
+"""Another shear stiffness, along y, for the check that the planes are not exchanged."""
+
 TURN = 0.5
 """rad, of the principal axes within the coupled section."""
 
@@ -58,10 +61,11 @@ def coupled_plank() -> Blade:
     return replace(PLANK, name="coupled plank", stiffness=stiffness)
 
 
-def short_beam(shear: float = np.inf) -> Blade:
-    """A short beam, optionally soft in shear (``shear`` in EI / L²)."""
+def short_beam(shear: float = np.inf, along_y: float | None = None) -> Blade:
+    """A short beam, optionally soft in shear (``shear`` in EI / L², along y another one if given)."""
     EA, GA, I = (SHORT / LENGTH) ** 2 * EI, shear * EI / LENGTH**2, MASS * (LENGTH / SHORT) ** 2
-    stiff = {"EA": EA, "GJ": 200.0, "EI_y": EI, "EI_z": EI, "GA_y": GA, "GA_z": GA}
+    GA_y = GA if along_y is None else along_y * EI / LENGTH**2
+    stiff = {"EA": EA, "GJ": 200.0, "EI_y": EI, "EI_z": EI, "GA_y": GA_y, "GA_z": GA}
     return uniform_blade("short beam", LENGTH, 0.0, mass=MASS, I_y=I, I_z=I, **stiff)
 
 
@@ -93,10 +97,10 @@ def cantilever_shape() -> Array:
     return shape / shape[-1]
 
 
-def timoshenko() -> float:
+def timoshenko(shear: float = SHEAR) -> float:
     """First frequency of the short beam at rest, rad/s; units of EI, m and L."""
-    (found,) = timoshenko_beam.cantilever(1, EI=1.0, GA=SHEAR, mass=1.0, rotary=SHORT**-2, length=1.0)
-    return float(found)
+    (frequency,) = timoshenko_beam.cantilever(1, EI=1.0, GA=shear, mass=1.0, rotary=SHORT**-2, length=1.0)
+    return float(frequency)
 
 
 def cornered() -> tuple[Blade, float]:

@@ -128,6 +128,12 @@ def rigid_in_shear(blade: Blade) -> Blade:
     return replace(blade, stiffness=stiffness)
 
 
+def shears_exchanged(blade: Blade) -> Blade:
+    stiffness = blade.stiffness.copy()
+    stiffness[:, [1, 2], [1, 2]] = stiffness[:, [2, 1], [2, 1]]
+    return replace(blade, stiffness=stiffness)
+
+
 def one_more(m: Modes) -> Modes:
     return Modes(m.omega, np.append(m.frequencies, 1e6), np.append(m.shapes, m.shapes[:1], axis=0), m.elements)
 
@@ -188,6 +194,7 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
     "curve dropped": (Core(given=straightened), {"keeps sweep", "keeps prebend"}),
     "a corner rounded off": (Core(given=rounded), {"kink"}),
     "shear dropped": (Core(given=rigid_in_shear), {"shear", "keeps shear flexibility"}),
+    "shear stiffnesses exchanged": (Core(given=shears_exchanged), {"shear"}),
     "rotary inertia dropped": (
         Core(given=masses(lambda m: m * np.diag([1, 1, 1, 0, 0, 0]))),
         {"keeps rotary inertia", "effects"},
