@@ -13,7 +13,10 @@ from ...core.tree.linearization import Linearization
 from ...references.protocol.interface import MechanismModes
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import MechanismAnswer as Answer
-from ..plan import mechanism_columns
+from ..judge import same
+from ..judge.pairing import Pair
+from ..judge.spectrum import Spectrum
+from ..solve import mechanism
 from .seeding import Fault, Seam, Trial
 
 HINGED = Trial("hinged-blade", (30.0,), ())
@@ -69,7 +72,10 @@ def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
 
 
 def _by_number(right: Any) -> Any:
-    return lambda reference, answer: np.eye(len(reference.modes.values), len(answer.values))
+    def wrong(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
+        return [Pair(k if k < len(other.values) else None, 1.0) for k in indices]
+
+    return wrong
 
 
 def _open(mechanism: Mechanism) -> Mechanism:
@@ -100,19 +106,19 @@ FAULTS = (
     Fault("loop: coupling", "core", "the stiffness by which a loop couples two coordinates is dropped", "percents",
           _about(lambda found: replace(found, K=np.diag(np.diag(found.K)))), LINKED),
     Fault("mechanism: damping lost", "adapter", "only the moduli of the eigenvalues are returned", "damping ratio 0.14",
-          ((mechanism_columns, "answers", _answered(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
+          ((mechanism, "answers", _answered(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
     Fault("mechanism: sixth digit", "adapter", "six digits of a code with the same equations", "1e-6",
-          ((mechanism_columns, "answers", _answered(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
+          ((mechanism, "answers", _answered(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
     Fault("mechanism: one mode", "adapter", "the code returns only its first mode", "no answer",
-          ((mechanism_columns, "answers", _answered(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
+          ((mechanism, "answers", _answered(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
     Fault("mechanism: shapes exchanged", "adapter", "shapes belong to other eigenvalues", "factors",
-          ((mechanism_columns, "answers", _answered(_exchanged)),), DAMPED),
+          ((mechanism, "answers", _answered(_exchanged)),), DAMPED),
     Fault("loop left open", "adapter", "the joint that closes the loop is dropped", "factors; no partner",
-          ((mechanism_columns, "answers", _given(_open)),), ASKED),
+          ((mechanism, "answers", _given(_open)),), ASKED),
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
-          ((mechanism_columns, "answers", _given(_still)),), ASKED),
+          ((mechanism, "answers", _given(_still)),), ASKED),
     Fault("mechanism: paired by number", "pairing", "modes are paired by their number", "a wrong shape counts",
-          ((mechanism_columns, "alike", _by_number),), blinds="mechanism: mixed shapes"),
+          ((same, "pair", _by_number),), blinds="mechanism: mixed shapes"),
     Fault("mechanism: mixed shapes", "adapter", "every shape is a mixture of two", "MAC 0.5",
-          ((mechanism_columns, "answers", _answered(_mixed)),), DAMPED),
+          ((mechanism, "answers", _answered(_mixed)),), DAMPED),
 )  # fmt: skip

@@ -25,7 +25,7 @@ from ...references.protocol.description import Description, describe
 from ..input import library
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
-from ..judge.results import Cell, Control
+from ..judge.results import Cell, Control, described
 from ..plan import mechanism
 from ..plan.blade import BladeSubject
 from ..plan.mechanism import MechanismSubject
@@ -212,12 +212,12 @@ def _judged(fault: Fault, right: Sequence[Cell], wrong: Sequence[Cell]) -> Contr
     return replace(_control(fault, tuple(map(_name, bad))), change=max(changes, key=abs, default=None))
 
 
-def _key(cell: Cell) -> tuple[str, str, float, int]:
-    return cell.case, cell.code, cell.omega, cell.mode
+def _key(cell: Cell) -> tuple[str, str, float, int, str, str]:
+    return cell.case, cell.code, cell.omega, cell.mode, cell.quantity, cell.where
 
 
 def _name(cell: Cell) -> str:
-    mode = f", {cell.family} (mode {cell.mode})" if cell.mode else ""
+    mode = f", {described(f'{cell.family} (mode {cell.mode})', cell.quantity, cell.where)}" if cell.mode else ""
     return f"{cell.case}, {cell.code}{mode}, {cell.omega:g} rad/s: {cell.verdict}"
 
 

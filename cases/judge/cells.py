@@ -52,7 +52,7 @@ def empty(head: Head, omega: float, verdict: Verdict, reason: str) -> Cell:
         code=head.code,
         version=head.version,
         role=head.role,
-        frequency=None,
+        value=None,
         reference=None,
         difference=None,
         uncertainty=None,
@@ -81,11 +81,19 @@ def without_reference(head: Head, omega: float, failure: Failure) -> Cell:
     return empty(head, omega, "inconclusive", f"core with the same effects: {failure.reason}")
 
 
-def row(head: Head, omega: float, i: int, reference: Reference, finest: Spectrum | None, partner: Pair) -> Cell:
+def row(
+    head: Head,
+    omega: float,
+    i: int,
+    reference: Reference,
+    finest: Spectrum | None,
+    partner: Pair,
+    quantity: str = "frequency",
+) -> Cell:
     """A cell without numbers, valid as the cell of a mode without a partner."""
     return replace(
         empty(head, omega, "fail", partner.note),
-        **mode_fields(reference, i),
+        **mode_fields(reference, i, quantity),
         elements=(finest.elements or None) if finest else None,
         mac=partner.mac if finest else None,
     )
@@ -97,10 +105,11 @@ def joined(parts: Iterable[Rows]) -> Rows:
     return [cell for part in cells for cell in part], [level for part in levels for level in part]
 
 
-def mode_fields(reference: Reference, i: int) -> dict[str, Any]:
-    """Fields of a cell that follow from core's ``i``-th compared mode."""
+def mode_fields(reference: Reference, i: int, quantity: str = "frequency") -> dict[str, Any]:
+    """Fields of a cell that follow from core's ``i``-th compared mode and the quantity."""
     family, _, ordinal = reference.core.names[i].rpartition(" ")
-    return {"mode": i + 1, "family": family, "ordinal": int(ordinal), "full": reference.full[i]}
+    full = reference.full[i] if quantity == "frequency" else None
+    return {"mode": i + 1, "family": family, "ordinal": int(ordinal), "full": full, "quantity": quantity}
 
 
 def unless_ambiguous(judged: Judgement, partner: Pair) -> Judgement:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Iterator
 from typing import Any
 
+from .quantities import QUANTITIES
+
 LONGEST = 300
 """Maximum number of characters of a name, a version or a title."""
 
@@ -16,7 +18,7 @@ CAUSES = ("discretisation", "model form", "rounding")
 
 LINES = frozenset(
     {"case", "code", "family", "version", "role", "shares", "control", "area", "mode", "cause", "part"}
-    | {"other", "distribution", "first", "before", "older"}
+    | {"other", "distribution", "first", "before", "older", "quantity", "where"}
 )
 """Fields limited to one line."""
 
@@ -60,7 +62,7 @@ def _faults(row: Any) -> Iterator[str]:
 def _cell(row: Any) -> Iterator[str]:
     if not row.case or not row.code:
         yield "case, code: one is empty"
-    if row.mode == 0 and (row.frequency is not None or row.verdict not in UNANSWERED):
+    if row.mode == 0 and (row.value is not None or row.verdict not in UNANSWERED):
         yield f"mode: 0 of a cell with an answer ({row.verdict}): counted from 1"
     if row.verdict in ("pass", "coarse", "known difference", "measured") and row.difference is None:
         yield f"difference: none, with the verdict {row.verdict}"
@@ -70,8 +72,10 @@ def _cell(row: Any) -> Iterator[str]:
     ordinal = getattr(row, "ordinal", row.mode)
     if bool(ordinal) != bool(row.mode) or not 0 <= ordinal <= MOST_MODES:
         yield f"ordinal: {ordinal}, of mode {row.mode}: counted from 1, and 0 without a mode"
-    if row.frequency is not None and row.frequency < 0:
-        yield f"frequency: {row.frequency:g}: negative"
+    if row.quantity not in QUANTITIES:
+        yield f"quantity: {row.quantity[:40]!r}: known are {', '.join(QUANTITIES)}"
+    if row.quantity == "frequency" and row.value is not None and row.value < 0:
+        yield f"value: {row.value:g}: a negative frequency"
     if row.uncertainty is not None and row.uncertainty < 0:
         yield f"uncertainty: {row.uncertainty:g}: negative"
     if row.target is not None and not 0 < row.target <= 1:

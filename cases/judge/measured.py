@@ -85,9 +85,9 @@ def explained(v: Validation) -> str:
 
 def visible(cell: Cell) -> float:
     """Lower bound on the model error at a measured point, relative to the measured value; 0 if none is visible."""
-    if cell.difference is None or cell.uncertainty is None or not cell.frequency or not cell.reference:
+    if cell.difference is None or cell.uncertainty is None or not cell.value or not cell.reference:
         return 0.0
-    return max(abs(cell.difference) - cell.uncertainty, 0.0) * cell.reference / cell.frequency
+    return max(abs(cell.difference) - cell.uncertainty, 0.0) * cell.reference / cell.value
 
 
 @dataclass(frozen=True)
@@ -112,7 +112,7 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
     """
     cell = replace(
         empty(head, omega, "measured", ""),
-        frequency=datum.value,
+        value=datum.value,
         **mode_fields(reference, i),
     )
     base = reference.core.modes[i].estimate

@@ -32,12 +32,12 @@ def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
     If the number is not within the target of the converged answer, its difference is known if core with that
     discretisation agrees with it and the refinements of that discretisation lead to the converged answer.
     """
-    if cell.verdict in AGREES or not coarse or not cell.frequency or not cell.reference or cell.difference is None:
+    if cell.verdict in AGREES or not coarse or not cell.value or not cell.reference or cell.difference is None:
         return cell
     remainder, limit, size = (
         value - 1.0
         for value in (
-            cell.frequency / coarse.frequency,
+            cell.value / coarse.frequency,
             coarse.limit / cell.reference,
             coarse.frequency / cell.reference,
         )

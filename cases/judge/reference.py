@@ -49,9 +49,11 @@ class Reference:
         likeness: MAC of each mode with its counterpart with all effects.
         effects: for each mode, its change due to each effect that is left out; empty if the change due to all of
             them together is within the target.
+        quantities: the quantities of each mode that are compared.
     """
 
     core: Converged
     full: tuple[float | None, ...]
     likeness: tuple[float, ...]
     effects: tuple[tuple[Effect, ...], ...]
+    quantities: tuple[str, ...] = ("frequency",)

@@ -110,7 +110,7 @@ def judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: st
         reason = join(reason, best.note, base.note and f"core: {base.note}", late)
     return replace(
         cell,
-        frequency=best.value,
+        value=best.value,
         reference=base.value,
         difference=difference,
         uncertainty=uncertainty,

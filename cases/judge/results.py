@@ -30,11 +30,11 @@ RESULTS = "results.jsonl"
 
 @dataclass(frozen=True)
 class Cell:
-    """One code's answer for one mode at one speed, against the reference.
+    """One code's answer for one quantity of one mode at one point, against the reference.
 
-    A cell without an answer (not run, not applicable) has ``mode`` 0 and no numbers. ``difference`` is
-    ``frequency/reference − 1``; ``uncertainty`` is the relative uncertainty of that difference: discretisation of both
-    sides, and half a unit of the last digit for a printed table. Frequencies are in rad/s.
+    A cell without an answer (not run, not applicable) has ``mode`` 0 and no numbers. ``difference`` is relative to the scale of
+    the quantity, see ``quantities``: for a frequency it is ``value/reference − 1``. ``uncertainty`` is that of the difference:
+    discretisation of both sides, and half a unit of the last digit for a printed table. Values are in SI units.
 
     Attributes:
         case: name of the case; if it has several blades, followed by a slash and the blade's name.
@@ -46,14 +46,15 @@ class Cell:
         role: ``code`` (refined until converged), ``discretisation`` (the paper's own discretisation, its own column),
             ``same discretisation`` (target 1e-8), ``table`` (printed numbers), ``measured`` (not a code: see
             ``measured``).
-        frequency: the code's best answer (extrapolated where refinement allows), rad/s.
-        reference: core's converged answer with the same physical effects, rad/s.
+        value: the code's best answer (extrapolated where refinement allows): rad/s for a frequency.
+        reference: core's converged answer with the same physical effects.
         difference: relative.
         uncertainty: relative.
         target: relative; upper limit of |difference| + uncertainty.
         verdict: see ``cases.judge.verdict``.
         reason: reason for any verdict other than a plain pass; names and quantifies the cause of a known difference.
-        full: core's converged answer with all effects, rad/s (equals ``reference`` unless the code lacks effects).
+        full: core's converged frequency with all effects, rad/s (equals ``reference`` unless the code lacks effects); None for
+            other quantities.
         shares: what the code shares with core: ``nothing``, ``mechanical model``, ``discretisation``, ``undeclared``,
             ``everything`` (core with its other method); empty for core itself.
         elements: number of elements of the finest refinement used.
@@ -61,6 +62,8 @@ class Cell:
         mac: mass-weighted MAC of the pairing.
         ordinal: number of the mode within its family, counted over all of core's modes at this speed, from 1; 0 without a
             mode.
+        quantity: what is compared, one of ``quantities.QUANTITIES``.
+        where: what determines the point besides the rotor speed, with its unit, such as ``azimuth 30°``; empty if nothing does.
     """
 
     case: str
@@ -70,7 +73,7 @@ class Cell:
     code: str
     version: str
     role: str
-    frequency: float | None
+    value: float | None
     reference: float | None
     difference: float | None
     uncertainty: float | None
@@ -83,11 +86,18 @@ class Cell:
     mac: float | None = None
     shares: str = ""
     ordinal: int = 0
+    quantity: str = "frequency"
+    where: str = ""
 
     @property
     def name(self) -> str:
-        """Name of the mode, such as ``flapwise 2``; empty without a mode."""
-        return f"{self.family} {self.ordinal}" if self.mode else ""
+        """Name of the mode, such as ``flapwise 2``, with its quantity and point, see ``described``; empty without a mode."""
+        return described(f"{self.family} {self.ordinal}", self.quantity, self.where) if self.mode else ""
+
+
+def described(mode: str, quantity: str, where: str) -> str:
+    """A mode in words: with its quantity if that is no frequency, and with what determines the point besides the speed."""
+    return ", ".join(part for part in (mode, quantity if quantity != "frequency" else "", where) if part)
 
 
 @dataclass(frozen=True)
@@ -205,14 +215,14 @@ class Planned:
         case: as in ``Cell``.
         code: as in ``Cell``.
         speeds: number of speeds at which cells are required.
-        modes: number of cells required at each speed; a code without an answer has one cell, of mode 0, with the
-            reason. Zero if only some modes are known, as in a printed table.
+        cells: number of cells required at each speed, one for each quantity of each compared mode; a code without an answer has
+            one cell, of mode 0, with the reason. Zero if only some modes are known, as in a printed table.
     """
 
     case: str
     code: str
     speeds: int
-    modes: int
+    cells: int
 
 
 @dataclass(frozen=True)
@@ -292,7 +302,7 @@ def gaps(run: Run) -> str:
 
 
 def _done(planned: Planned, modes: dict[float, list[int]]) -> bool:
-    answered = (0 in found or len(found) >= planned.modes for found in modes.values())
+    answered = (0 in numbers or len(numbers) >= planned.cells for numbers in modes.values())
     return len(modes) >= planned.speeds and all(answered)
 
 

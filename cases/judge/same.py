@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 from ...references.protocol.process import Failure
 from .cells import Head, Rows, empty, failed, join, row, unless_ambiguous
 from .pairing import pair
+from .quantities import difference
 from .reference import Reference
-from .spectrum import Answer
+from .spectrum import Answer, Spectrum, fault
 from .uncertainty import ROUNDING, WARY
 from .verdict import judge
 
@@ -37,6 +38,8 @@ def same(
 ) -> Rows:
     """Cells of a code that shares core's discretisation, against core's modes ``mine`` with as many elements.
 
+    A mechanism has no other discretisation, and ``mine`` is the reference itself.
+
     ``rounding_of_core``: (m,) relative uncertainty of core's frequencies due to rounding. The other code's equations
     are equally sensitive, so it is assumed to have the same uncertainty, or the one that it reports.
     """
@@ -45,22 +48,29 @@ def same(
     if isinstance(mine, Failure):
         return [empty(head, omega, "inconclusive", f"core with the same discretisation: {mine.reason}")], []
     core = reference.core
+    if reason := fault(core.spectrum, theirs):
+        return [failed(head, omega, Failure("nonsense", reason))], []
     weighted = replace(mine, weight=core.spectrum.weight)
-    cells, levels = [], []
+    cells = []
     for i, base in enumerate(pair(core.spectrum, mine, core.indices)):
         (partner,) = pair(weighted, theirs, [base.mode]) if base.mode is not None else (base,)
-        cell = row(head, omega, i, reference, theirs, partner)
-        if base.mode is not None and partner.mode is not None:
-            f, f0 = float(theirs.frequencies[partner.mode]), float(mine.frequencies[base.mode])
-            noise = (
-                float(rounding_of_core[base.mode])
-                if rounding_of_core is not None and len(rounding_of_core)
-                else ROUNDING
-            )
-            own = float(theirs.rounding[partner.mode]) if len(theirs.rounding) else noise
-            sure = noise + max(own, noise)
-            verdict, reason = unless_ambiguous(judge(f / f0 - 1.0, sure, head.target), partner)
-            cell = replace(cell, frequency=f, reference=f0, difference=f / f0 - 1.0, uncertainty=sure)
-            cell = replace(cell, verdict=verdict, reason=join(reason, partner.note))
-        cells.append(cell)
-    return cells, levels
+        sure = _uncertainty(base.mode, partner.mode, theirs, rounding_of_core)
+        for quantity in reference.quantities:
+            cell = row(head, omega, i, reference, theirs, partner, quantity)
+            if base.mode is not None and partner.mode is not None:
+                value, expected = (float(s.of(quantity)[k]) for s, k in ((theirs, partner.mode), (mine, base.mode)))
+                away = difference(quantity, value, expected)
+                verdict, reason = unless_ambiguous(judge(away, sure, head.target), partner)
+                cell = replace(cell, value=value, reference=expected, difference=away, uncertainty=sure)
+                cell = replace(cell, verdict=verdict, reason=join(reason, partner.note))
+            cells.append(cell)
+    return cells, []
+
+
+def _uncertainty(base: int | None, partner: int | None, theirs: Spectrum, rounding_of_core: Array | None) -> float:
+    """Uncertainty of a difference due to rounding, of core and of the other code."""
+    if base is None or partner is None:
+        return 0.0
+    noise = float(rounding_of_core[base]) if rounding_of_core is not None and len(rounding_of_core) else ROUNDING
+    own = float(theirs.rounding[partner]) if len(theirs.rounding) else noise
+    return noise + max(own, noise)

@@ -59,6 +59,10 @@ class Spectrum:
         size = self.frequencies
         return np.divide(0.0 - self.values.real, size, out=np.zeros_like(size), where=size > 0)
 
+    def of(self, quantity: str) -> Array:
+        """(m,) values of a quantity, by its name in ``quantities``."""
+        return {"frequency": self.frequencies, "damping": self.damping}[quantity]
+
 
 Answer = Spectrum | Failure
 

@@ -17,6 +17,8 @@ from ..input.mechanism_schema import Compare
 from ..input.mechanisms import Described
 from ..input.schema import rad_s
 from ..judge.results import Setting
+from ..solve.mechanism import QUANTITIES, references
+from ..solve.reference import References
 from . import mechanism_columns
 from .column import Column
 from .user_results import UserResults
@@ -49,7 +51,7 @@ class MechanismSubject:
     @property
     def cells(self) -> int:
         """See ``Subject``."""
-        return self.compare.modes
+        return self.compare.modes * len(QUANTITIES)
 
     @property
     def time_limit(self) -> float:
@@ -96,9 +98,9 @@ class MechanismSubject:
         """Results of other programs are for blades and add no column."""
         return mechanism_columns.columns(self.described, self.compare, codes, limits)
 
-    def references(self, columns: Sequence[Column]) -> Callable[[], mechanism_columns.References]:
+    def references(self, columns: Sequence[Column]) -> Callable[[], References]:
         """See ``Subject``."""
-        return partial(mechanism_columns.references, self.described, self.points, self.compare.modes)
+        return partial(references, self.described, self.points, self.compare.modes)
 
     def error_budget(self) -> None:
         """See ``Subject``."""

@@ -65,7 +65,7 @@ def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Ce
 
     A program that names such a mode by its largest motion counts it in a family, and core does not.
     """
-    f, core = cell.frequency, reference.core
+    f, core = cell.value, reference.core
     off = [abs(f / m.estimate.value - 1.0) if m.estimate and f else inf for m in core.modes]
     best = off.index(min(off))
     mixed = any(name.startswith(MIXED) for name in core.spectrum.labels[: core.indices[max(k, best)] + 1])

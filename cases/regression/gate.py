@@ -1,6 +1,6 @@
 """Comparison of a run with an earlier one: moved, worse and missing answers.
 
-Cells are identified by case, code, rotor speed and mode. A run fails for a new miss (including that of a new cell), a
+Cells are identified by case, code, rotor speed, mode and quantity. A run fails for a new miss (including that of a new cell), a
 missing answer, a wider target, or a seeded fault that is no longer detected or tried. Moved frequencies are listed and fail
 a run only on request, since an improved discretisation also moves them. Measured data are not answers: they are counted but
 cannot fail a run.
@@ -9,6 +9,7 @@ cannot fail a run.
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
+from ..judge.quantities import difference
 from ..judge.results import Verdict
 from .history import Detection, Entry, Key, Point
 
@@ -37,10 +38,12 @@ class Change:
 
     @property
     def moved(self) -> float | None:
-        """Relative change of the frequency; None unless both runs have one."""
-        if self.before is None or not self.before.frequency or self.after.frequency is None:
+        """Change of the value, relative to the scale of its quantity; None unless both runs have one."""
+        if self.before is None or self.before.value is None or self.after.value is None:
             return None
-        return self.after.frequency / self.before.frequency - 1.0
+        if not self.before.value and self.before.quantity == "frequency":
+            return None
+        return difference(self.after.quantity, self.after.value, self.before.value)
 
 
 @dataclass(frozen=True)
@@ -58,7 +61,7 @@ class Comparison:
     Attributes:
         before: the earlier run.
         after: the later run.
-        moved: cells whose frequency moved, largest change first.
+        moved: cells whose value moved, largest change first.
         worse: cells with a worse verdict, worst first.
         loosened: cells with a wider target.
         measured: number of measured points in the later run.
@@ -140,7 +143,9 @@ def compare(
         worse=tuple(worse),
         better=tuple(c for c in changes if _better(c)),
         gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in listed),
-        new=tuple(c.after for c in changes if c.after.frequency and not (c.before and c.before.frequency)),
+        new=tuple(
+            c.after for c in changes if c.after.value is not None and not (c.before and c.before.value is not None)
+        ),
         undetected=tuple(c for c in before.controls if c.detected_by and not tried.get(c.control, False)),
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),
@@ -171,8 +176,10 @@ def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
 
     An answer that has become a measurement counts as missing: it is no longer evidence.
     """
-    answered = {p.key for p in now if p.frequency is not None and p.verdict != "measured"}
+    answered = {p.key for p in now if p.value is not None and p.verdict != "measured"}
     verdicts: dict[Key, Verdict] = {p.key: p.verdict for p in now}
-    due = [p for p in old.values() if p.frequency is not None and p.verdict != "measured"]
+    due = [p for p in old.values() if p.value is not None and p.verdict != "measured"]
     gone = [p for p in due if p.key not in answered]
-    return [Gone(p, verdicts.get(p.key) or verdicts.get((p.case, p.code, p.omega, 0))) for p in gone]
+    return [
+        Gone(p, verdicts.get(p.key) or verdicts.get((p.case, p.code, p.omega, 0, "frequency", p.where))) for p in gone
+    ]

@@ -16,7 +16,7 @@ import portalocker
 
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..judge import checks
-from ..judge.results import Run, Verdict
+from ..judge.results import Cell, Run, Verdict
 
 
 class Point(msgspec.Struct, frozen=True, array_like=True):
@@ -27,20 +27,27 @@ class Point(msgspec.Struct, frozen=True, array_like=True):
     omega: float
     mode: int
     family: str
-    frequency: float | None
+    value: float | None
     difference: float | None
     uncertainty: float | None
     verdict: Verdict
     target: float | None = None
+    quantity: str = "frequency"
+    where: str = ""
 
     @property
     def key(self) -> "Key":
         """Key that identifies the cell in another run."""
-        return self.case, self.code, self.omega, self.mode
+        return key(self)
 
 
-Key = tuple[str, str, float, int]
-"""Case, code, rotor speed (rad/s), mode."""
+Key = tuple[str, str, float, int, str, str]
+"""Case, code, rotor speed (rad/s), mode, quantity, and where."""
+
+
+def key(of: Cell | Point) -> Key:
+    """Key that identifies a cell in another run."""
+    return of.case, of.code, of.omega, of.mode, of.quantity, of.where
 
 
 class Detection(msgspec.Struct, frozen=True, array_like=True):
@@ -95,11 +102,13 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
                 omega=c.omega,
                 mode=c.mode,
                 family=c.family,
-                frequency=c.frequency,
+                value=c.value,
                 difference=c.difference,
                 uncertainty=c.uncertainty,
                 verdict=c.verdict,
                 target=c.target,
+                quantity=c.quantity,
+                where=c.where,
             )
             for c in run.cells
         ),

@@ -115,7 +115,7 @@ def _failing(value: Any) -> bool:
     if isinstance(value, Control):
         return not value.detected_by
     if isinstance(value, Cell):
-        return value.verdict == "fail" or (value.frequency is None and value.verdict != "not applicable")
+        return value.verdict == "fail" or (value.value is None and value.verdict != "not applicable")
     if isinstance(value, dict):
         return any(map(_failing, value.values()))
     return isinstance(value, list | tuple) and any(map(_failing, value))

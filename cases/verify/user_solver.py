@@ -141,20 +141,20 @@ def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: 
         for mine in cells:
             number = agreed.get((mine.omega, mine.mode))
             if number and mine.family == number.family and _agrees(mine.reference, number):
-                out.append(_compared(mine, number, number.frequency or 0.0))
+                out.append(_compared(mine, number, number.value or 0.0))
     return out
 
 
 def _agrees(reference: float | None, number: Cell) -> bool:
     """Whether core without the effects that the solver lacks also passes a printed number; otherwise it is not used."""
-    if reference is None or not number.frequency:
+    if reference is None or not number.value:
         return False
-    return judge(reference / number.frequency - 1.0, number.uncertainty, number.target)[0] == "pass"
+    return judge(reference / number.value - 1.0, number.uncertainty, number.target)[0] == "pass"
 
 
 def _compared(mine: Cell, number: Cell, printed: float) -> Cell:
     """One frequency against one printed number; a known difference of the frequency remains known."""
-    difference = (mine.frequency or 0.0) / printed - 1.0
+    difference = (mine.value or 0.0) / printed - 1.0
     unsure = None if mine.uncertainty is None else mine.uncertainty + (number.uncertainty or 0.0)
     verdict, reason = judge(difference, unsure, max(mine.target, number.target))
     if verdict != "pass" and mine.verdict == "known difference":
@@ -171,14 +171,14 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
 
     It must explain at least nine tenths of the difference.
     """
-    if cell.frequency is None or cell.reference is None or cell.difference is None:
+    if cell.value is None or cell.reference is None or cell.difference is None:
         return ""
     found: list[tuple[float, str]] = []
     for wrong in wrongs:
         for m in wrong.modes:
             same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < SAME_MODE
             if wrong.omega == cell.omega and same and m.change is not None:
-                rest = cell.frequency / (cell.reference * (1.0 + m.change)) - 1.0
+                rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):
                     likeness = f"as core with this fault: {wrong.fault} ({percent(m.change)}; {unsigned(rest)} from it)"
                     found.append((abs(rest), likeness))

@@ -11,6 +11,8 @@ from rich.console import RenderableType
 
 from ...cases.input.errors import CaseError
 from ...cases.input.toml import document
+from ...cases.judge.quantities import QUANTITIES
+from ...cases.judge.results import described
 from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone
 from ...cases.regression.history import Detection, Entry, Point
 from ..shared import table_columns
@@ -67,7 +69,7 @@ def sections(found: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
 
 def _place(point: Point, units: ByCase) -> Row:
     family = f" ({point.family})" if point.family else ""
-    mode = f"{point.mode}{family}" if point.mode else "none"
+    mode = described(f"{point.mode}{family}", point.quantity, point.where) if point.mode else "none"
     return {"case": point.case, "code": point.code, "speed": _units(point.case, units).at(point.omega), "mode": mode}
 
 
@@ -90,15 +92,20 @@ def _change(change: Change, units: ByCase) -> Row:
     was = before.verdict if before else "not there"
     of_case = _units(after.case, units)
     return _place(after, units) | {
-        "from": _digits(before.frequency if before else None, of_case),
-        "to": _digits(after.frequency, of_case),
+        "from": _digits(before, of_case),
+        "to": _digits(after, of_case),
         "change": "" if change.moved is None else f"{change.moved:+.1e}",
         "verdict": after.verdict if was == after.verdict else f"{was} → {after.verdict}",
     }
 
 
-def _digits(frequency: float | None, units: Units) -> str:
-    return "none" if frequency is None else f"{frequency * units.frequencies:.12g} {units.frequency}"
+def _digits(point: Point | None, units: Units) -> str:
+    """The value of a point with its unit: a frequency in that of the case."""
+    if point is None or point.value is None:
+        return "none"
+    if point.quantity == "frequency":
+        return f"{point.value * units.frequencies:.12g} {units.frequency}"
+    return f"{point.value:.12g} {QUANTITIES[point.quantity].unit}".rstrip()
 
 
 def _gone(gone: Iterable[Gone], units: ByCase) -> list[Row]:
@@ -176,7 +183,7 @@ def annotations(found: Comparison, folder: Path, units: ByCase) -> list[str]:
 
 def _became(change: Change, units: ByCase) -> str:
     was = change.before.verdict if change.before else "not there"
-    return f"{was} → {change.after.verdict}, {_digits(change.after.frequency, _units(change.after.case, units))}"
+    return f"{was} → {change.after.verdict}, {_digits(change.after, _units(change.after.case, units))}"
 
 
 def _by_column(points: Sequence[tuple[Point, str]], units: ByCase) -> list[tuple[Point, str]]:

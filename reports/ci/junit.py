@@ -7,9 +7,10 @@ crashed code, are replaced.
 import re
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
-from ...cases.judge.results import Cell, Run
+from ...cases.judge.quantities import QUANTITIES
+from ...cases.judge.results import Cell, Run, described
 from ...cases.regression.gate import Comparison
-from ...cases.regression.history import Detection, Point
+from ...cases.regression.history import Detection, Key, Point, key
 from ..shared import summary
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -34,8 +35,8 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
     for case in summary.cases(run):
         suite = SubElement(root, "testsuite", name=_text(case))
         for cell in (c for c in run.cells if c.case == case):
-            test = _test(suite, case, _name(cell.code, cell.mode, cell.family, cell.omega))
-            _judge(test, cell, findings.get((cell.case, cell.code, cell.omega, cell.mode), ""))
+            test = _test(suite, case, _name(cell))
+            _judge(test, cell, findings.get(key(cell), ""))
     if found:
         _regressions(root, found)
     for suite in root:
@@ -46,14 +47,14 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
     return tostring(root, encoding="utf-8", xml_declaration=True)
 
 
-def _findings(found: Comparison, strict: bool) -> dict[tuple[str, str, float, int], str]:
+def _findings(found: Comparison, strict: bool) -> dict[Key, str]:
     """Findings of the gate on present cells, by cell."""
     messages = {
         c.after.key: f"worse: {c.before.verdict if c.before else 'not there'} → {c.after.verdict}" for c in found.worse
     }
     for c in found.moved if strict else ():
         if c.before:
-            messages.setdefault(c.after.key, f"moved: {c.before.frequency!r} → {c.after.frequency!r} rad/s")
+            messages.setdefault(c.after.key, f"moved: {_digits(c.before)} → {_digits(c.after)}")
     return messages
 
 
@@ -64,8 +65,8 @@ def _regressions(root: Element, found: Comparison) -> None:
     suite = SubElement(root, "testsuite", name="against the earlier run")
     for gone in found.gone:
         p: Point = gone.point
-        test = _test(suite, p.case, _name(p.code, p.mode, p.family, p.omega))
-        _failed(test, "gone", f"the answer {p.frequency!r} rad/s is missing; now {gone.instead or 'nothing'}")
+        test = _test(suite, p.case, _name(p))
+        _failed(test, "gone", f"the answer {_digits(p)} is missing; now {gone.instead or 'nothing'}")
     for control in found.undetected:
         _lost(suite, control)
 
@@ -75,9 +76,13 @@ def _lost(suite: Element, control: Detection) -> None:
     _failed(test, "not detected", f"was detected by {', '.join(control.detected_by)}; no code detects it now")
 
 
-def _name(code: str, mode: int, family: str, omega: float) -> str:
-    which = f"mode {mode} ({family})" if mode else "no answer"
-    return f"{code}: {which} at {omega:.6g} rad/s"
+def _digits(point: Point) -> str:
+    return f"{point.value!r} {QUANTITIES[point.quantity].unit}".rstrip()
+
+
+def _name(of: Cell | Point) -> str:
+    which = described(f"mode {of.mode} ({of.family})", of.quantity, of.where) if of.mode else "no answer"
+    return f"{of.code}: {which} at {of.omega:.6g} rad/s"
 
 
 def _test(suite: Element, case: str, name: str) -> Element:

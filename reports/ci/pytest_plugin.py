@@ -77,6 +77,7 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
 def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
     from ...cases.input.errors import CaseError
     from ...cases.input.library import select
+    from ...cases.plan.blade import blades
     from ...cases.plan.names import unique
     from ...cases.verify.user_solver import UserSolver
 
@@ -90,7 +91,7 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
     try:
         some = [select(n) for n in wanted.split(",")] if wanted else None
         cases = [select(n) for n in solver.cases] or some or _all()
-        unique(cases, [], [])
+        unique(blades(*cases), [], [])
         only = {v.name for c in some or cases for v in c.variants}
     except CaseError as error:
         raise pytest.UsageError(f"{where}: {error}") from error
@@ -164,7 +165,7 @@ class CellUnderTest:
         from ...cases.verify.user_solver import alike
 
         where = f"{cell.case} at {cell.omega:.6g} rad/s, mode {cell.mode} ({cell.family})" if cell.mode else cell.case
-        answer = "no answer" if cell.frequency is None else f"{cell.frequency:.7g} rad/s"
+        answer = "no answer" if cell.value is None else f"{cell.value:.7g} rad/s"
         right = "" if cell.reference is None else f", not {cell.reference:.7g}"
         source = f" ({cell.code.partition(', ')[2]})" if cell.role == "table" else ""
         compare, variant = self.chosen.case.text.compare, self.chosen.variant

@@ -6,6 +6,7 @@ from dataclasses import asdict, replace
 from functools import lru_cache
 from typing import Any
 
+from ...cases.judge.quantities import QUANTITIES
 from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
@@ -155,14 +156,17 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
 
 
 def _cell(c: Cell, u: Units) -> dict[str, Any]:
-    frequencies = {"f": c.frequency, "full": c.full, "ref": c.reference}
-    scaled = {name: None if value is None else value * u.frequencies for name, value in frequencies.items()}
+    factor = u.frequencies if c.quantity == "frequency" else 1.0
+    values = {"f": c.value, "full": c.full, "ref": c.reference}
+    scaled = {name: None if value is None else value * factor for name, value in values.items()}
     return {
         **scaled,
         "code": summary.column(c),
         "speed": c.omega * u.speeds,
         "mode": c.mode,
         "name": c.name,
+        "quantity": c.quantity,
+        "unit": u.frequency if c.quantity == "frequency" else QUANTITIES[c.quantity].unit,
         "verdict": WORST_FIRST.index(c.verdict),
         "text": plus_minus(c) if size(c) is not None else "",
         "reason": c.reason,

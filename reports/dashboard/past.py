@@ -42,19 +42,21 @@ def _run(e: Entry) -> dict[str, Any]:
 
 
 def _by_key(entries: Sequence[Entry]) -> dict[Key, list[Any]]:
+    """The frequencies of every cell by run; other quantities are left to the gate."""
     series: dict[Key, list[Any]] = defaultdict(lambda: [None] * len(entries))
     for k, entry in enumerate(entries):
         for point in entry.cells:
-            series[point.key][k] = point
+            if point.quantity == "frequency":
+                series[point.key][k] = point
     return series
 
 
 def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
     """Case, code, speed (rad/s), mode, family; frequencies, differences, verdicts, as one value or one per run."""
     out = []
-    for (case, code, omega, mode), points in _by_key(entries).items():
+    for (case, code, omega, mode, *_), points in _by_key(entries).items():
         there = [p for p in points if p is not None]
-        values = [None if p is None else p.frequency for p in points]
+        values = [None if p is None else p.value for p in points]
         differences = [None if p is None else p.difference for p in points]
         judged = [None if p is None else WORST_FIRST.index(p.verdict) for p in points]
         family = there[-1].family
@@ -74,10 +76,10 @@ def _short(values: Sequence[float | None], scale: float | None = None) -> Any:
 def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
     """Changes of frequencies: one row per run, case and code (or core)."""
     found: dict[tuple[int, str, str], dict[tuple[float, int], float | None]] = defaultdict(dict)
-    for (case, code, omega, mode), points in _by_key(entries).items():
-        own = [None if p is None else p.frequency for p in points]
+    for (case, code, omega, mode, *_), points in _by_key(entries).items():
+        own = [None if p is None else p.value for p in points]
         core = [
-            None if p is None or p.frequency is None or p.difference is None else p.frequency / (1.0 + p.difference)
+            None if p is None or p.value is None or p.difference is None else p.value / (1.0 + p.difference)
             for p in points
         ]
         for who, values in ((code, own), (CORE, core)):

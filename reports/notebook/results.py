@@ -164,16 +164,20 @@ class VerifyResult:
     run: Run
 
     def to_frame(self) -> pd.DataFrame:
-        """One row per code, speed and mode: ``case``, ``omega_rad_s``, ``mode``, ``code``, ``frequency`` and
-        ``reference`` (rad/s), ``difference``, ``uncertainty``, ``target`` (relative), ``verdict``, ``shares`` (what the code
-        has in common with the in-house solver), ``reason``."""
+        """One row per code, speed, mode and quantity.
+
+        The columns are ``case``, ``omega_rad_s``, ``mode``, ``quantity``, ``code``, ``value`` and ``reference`` (frequencies in
+        rad/s), ``difference``, ``uncertainty``, ``target`` (relative), ``verdict``, ``shares`` (what the code has in common
+        with the in-house solver) and ``reason``.
+        """
         rows = [
             {
                 "case": c.case,
                 "omega_rad_s": c.omega,
                 "mode": c.name,
+                "quantity": c.quantity,
                 "code": summary.column(c),
-                "frequency": c.frequency,
+                "value": c.value,
                 "reference": c.reference,
                 "difference": c.difference,
                 "uncertainty": c.uncertainty,
@@ -191,7 +195,7 @@ class VerifyResult:
         ``difference`` (the largest, relative), ``modes`` (compared)."""
         frame = self.to_frame()
         rows = []
-        for code, cells in pd.DataFrame(frame[frame["frequency"].notna()]).groupby("code", sort=False):
+        for code, cells in pd.DataFrame(frame[frame["value"].notna()]).groupby("code", sort=False):
             verdicts = set(cells["verdict"])
             rows.append(
                 {
@@ -199,7 +203,7 @@ class VerifyResult:
                     "shares": cells["shares"].iloc[0],
                     "verdict": next(v for v in summary.WORST_FIRST if v in verdicts),
                     "difference": cells["difference"].abs().max(),
-                    "modes": len(cells),
+                    "modes": int((cells["quantity"] == "frequency").sum()),
                 }
             )
         return pd.DataFrame(rows, columns=["code", "shares", "verdict", "difference", "modes"])

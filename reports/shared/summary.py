@@ -92,8 +92,8 @@ def size(cell: Cell) -> float | None:
     If a code agrees with core without the same effects, its known difference is that from core with all effects.
     """
     agrees = cell.difference is not None and abs(cell.difference) <= cell.target
-    if cell.verdict == "known difference" and agrees and cell.frequency is not None and cell.full is not None:
-        return cell.frequency / cell.full - 1.0
+    if cell.verdict == "known difference" and agrees and cell.value is not None and cell.full is not None:
+        return cell.value / cell.full - 1.0
     return cell.difference
 
 

@@ -4,6 +4,7 @@ from collections import Counter
 from collections.abc import Sequence
 from itertools import groupby
 
+from ...cases.judge.quantities import QUANTITIES
 from ...cases.judge.results import Cell, Run
 from ..shared import summary
 from ..shared.markdown import plain, table
@@ -19,7 +20,7 @@ def measured(run: Run, case: str, unit: Units) -> str:
             "data": plain(c.code),
             "mode": plain(c.name),
             "speed": unit.at(c.omega),
-            f"measured, {unit.frequency}": f"{c.frequency * unit.frequencies:.5g}" if c.frequency else "",
+            f"measured, {unit.frequency}": f"{c.value * unit.frequencies:.5g}" if c.value else "",
             f"Southwell, {unit.frequency}": f"{c.reference * unit.frequencies:.5g}" if c.reference else "",
             "measured against Southwell": f"{SYMBOL[c.verdict]} {summary.plus_minus(c)}".strip(),
             "model error": plain(c.reason),
@@ -50,13 +51,21 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
     for key in dict.fromkeys(at[c] for c in sorted(cells, key=lambda c: (c.full is None, c.full or 0.0))):
         here = sorted((c for c in cells if at[c] == key), key=lambda c: c.reference != c.full)
         mode, core = here[0].name, here[0].full
-        row = {"mode": plain(mode), f"Southwell, {unit.frequency}": f"{core * unit.frequencies:.7g}" if core else ""}
+        own = f"{core * unit.frequencies:.7g}" if core else _plain_value(here[0])
+        row = {"mode": plain(mode), f"Southwell, {unit.frequency}": own}
         for name in columns(cells):
             mine = next((c for c in here if column(c) == name), None)
             other = f"<br>{plain(mine.name)}" if mine and mine.name != mode else ""
             row[plain(name)] = f"{_entry(mine, unit)}{other}" if mine else ""
         rows.append(row)
     return table(rows)
+
+
+def _plain_value(cell: Cell) -> str:
+    """The reference of a quantity that is no frequency, with its unit."""
+    if cell.quantity == "frequency" or cell.reference is None:
+        return ""
+    return f"{cell.reference:.7g} {QUANTITIES[cell.quantity].unit}".rstrip()
 
 
 def _rows(cells: Sequence[Cell]) -> dict[Cell, tuple[float | str, int]]:
@@ -72,8 +81,8 @@ def _rows(cells: Sequence[Cell]) -> dict[Cell, tuple[float | str, int]]:
 
 def _entry(cell: Cell, unit: Units) -> str:
     frequency = ""
-    if cell.role in ("discretisation", "table") and cell.frequency is not None:
-        frequency = f"{cell.frequency * unit.frequencies:.6g}<br>"
+    if cell.role in ("discretisation", "table") and cell.value is not None:
+        frequency = f"{cell.value * unit.frequencies:.6g}<br>"
     return f"{frequency}{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}{summary.wide(cell)}".strip()
 
 

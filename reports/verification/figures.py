@@ -28,14 +28,15 @@ def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Fi
     that use core's discretisation are omitted, because their answers are not converged. Returns None if the case has
     numbers at fewer than two speeds. ``among`` lists the columns whose order gives the colours: by default those of ``run``.
     """
-    cells = [c for c in run.cells if c.case == case and c.role not in ("same discretisation", "measured")]
-    data = [c for c in run.cells if c.case == case and c.verdict == "measured"]
+    own = [c for c in run.cells if c.case == case and c.quantity == "frequency"]
+    cells = [c for c in own if c.role not in ("same discretisation", "measured")]
+    data = [c for c in own if c.verdict == "measured"]
     lines = core_lines(cells)
     speeds = sorted({omega for line in lines.values() for omega in line})
     if len(speeds) < 2:
         return None
-    answers = [c.frequency for c in (*cells, *data) if c.frequency is not None]
-    shown = columns([c for c in cells if c.frequency is not None])
+    answers = [c.value for c in (*cells, *data) if c.value is not None]
+    shown = columns([c for c in cells if c.value is not None])
     with house():
         low = band(len(shown) + 1 + len(columns(data)))
         height = 4.6 + low
@@ -112,10 +113,10 @@ def _markers(
     """Draw hollow nested markers, the first code's the largest, so that codes that agree remain visible."""
     handles = [Line2D([], [], color=INK, lw=1.0, label="Southwell, converged")]
     for rank, name in enumerate(shown):
-        mine = [c for c in cells if column(c) == name and c.frequency is not None]
+        mine = [c for c in cells if column(c) == name and c.value is not None]
         handles += axes.plot(
             [c.omega * units.speeds for c in mine],
-            [(c.frequency or 0.0) * units.frequencies for c in mine],
+            [(c.value or 0.0) * units.frequencies for c in mine],
             ls="",
             marker=style[name].marker,
             ms=10.0 - 7.0 * rank / max(len(shown) - 1, 1),
@@ -136,7 +137,7 @@ def _data(axes: Axes, cells: Sequence[Cell], units: Units) -> list[Line2D]:
         mine = [c for c in cells if column(c) == name]
         axes.errorbar(
             [c.omega * units.speeds for c in mine],
-            [(c.frequency or 0.0) * units.frequencies for c in mine],
+            [(c.value or 0.0) * units.frequencies for c in mine],
             yerr=[(c.uncertainty or 0.0) * (c.reference or 0.0) * units.frequencies for c in mine],
             fmt="D",
             ms=4.5,

@@ -11,13 +11,13 @@ def line(run: Run) -> str:
     A printed value is reproduced if the source's discretisation rounds to it: the cell's uncertainty is half a unit of the last
     printed digit.
     """
-    solved = {(c.omega, c.name): c.frequency for c in run.cells if c.case == CASE and c.role == "discretisation"}
-    printed = [c for c in run.cells if (c.case, c.code) == (CASE, TABLE) and c.frequency]
+    solved = {(c.omega, c.name): c.value for c in run.cells if c.case == CASE and c.role == "discretisation"}
+    printed = [c for c in run.cells if (c.case, c.code) == (CASE, TABLE) and c.value]
     pairs = [(c, solved.get((c.omega, c.name))) for c in printed]
     if not pairs:
         return ""
     reproduced = sum(
-        f is not None and abs(f - (c.frequency or 0.0)) <= (c.uncertainty or 0.0) * (c.frequency or 0.0) * (1 + 1e-9)
+        f is not None and abs(f - (c.value or 0.0)) <= (c.uncertainty or 0.0) * (c.value or 0.0) * (1 + 1e-9)
         for c, f in pairs
     )
     return f"Table 1 of Park et al. (2010): {reproduced} of {len(pairs)} printed values reproduced."

@@ -45,9 +45,9 @@ def cells_of(run: Run, blade: str, code: str) -> dict[float, list[Cell]]:
 
 def within_target(cell: Cell) -> bool:
     """Whether the cell's own numbers are within its target."""
-    if cell.frequency is None or cell.reference is None or cell.uncertainty is None:
+    if cell.value is None or cell.reference is None or cell.uncertainty is None:
         return False
-    return abs(cell.frequency / cell.reference - 1.0) + cell.uncertainty <= cell.target
+    return abs(cell.value / cell.reference - 1.0) + cell.uncertainty <= cell.target
 
 
 def test_every_code_and_every_blade_is_in_the_table() -> None:
@@ -109,7 +109,7 @@ def test_the_discretisation_of_the_source_is_explained(run: Run) -> None:
 def test_the_discretisation_of_the_source_gives_the_printed_digits(run: Run) -> None:
     """Park et al. (2010), Table 1, column Present: 11.71, 70.37, 189.7."""
     cells = [c for c in run.cells if (c.case, c.role, c.omega) == ("park-cantilever", "discretisation", 10.0)]
-    assert [f"{c.frequency:.4g}" for c in cells if c.family == "edgewise"] == ["11.71", "70.37", "189.7"]
+    assert [f"{c.value:.4g}" for c in cells if c.family == "edgewise"] == ["11.71", "70.37", "189.7"]
 
 
 @needs_run
@@ -128,10 +128,10 @@ def test_the_surrogate_rises_as_the_papers_blade_does(run: Run) -> None:
 
 @needs_run
 def test_verdicts_follow_from_the_numbers(run: Run) -> None:
-    judged = [c for c in run.cells if c.frequency and c.reference and c.uncertainty is not None]
+    judged = [c for c in run.cells if c.value and c.reference and c.uncertainty is not None]
     assert len(judged) > 100
     for cell in judged:
-        difference = (cell.frequency or 0.0) / (cell.reference or 1.0) - 1.0
+        difference = (cell.value or 0.0) / (cell.reference or 1.0) - 1.0
         assert cell.difference == pytest.approx(difference, abs=1e-12), cell
         within = abs(difference) + (cell.uncertainty or 0.0) <= cell.target
         if cell.verdict in ("pass", "coarse", "fail", "inconclusive"):

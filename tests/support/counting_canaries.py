@@ -16,7 +16,7 @@ STANDINGS = ("agrees", "coarse", "known difference", "estimate", "open", "disagr
 def _cell(code: str, **changes: Any) -> Cell:
     values: dict[str, Any] = {
         "case": CASE, "omega": 10.0, "mode": 1, "family": "flapwise", "code": code, "version": "1", "role": "code",
-        "frequency": 10.0, "reference": 10.0, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3, "verdict": "pass",
+        "value": 10.0, "reference": 10.0, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3, "verdict": "pass",
         "shares": "nothing",
     }  # fmt: skip
     return Cell(**{**values, **changes})

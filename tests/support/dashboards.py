@@ -26,7 +26,7 @@ def run() -> Run:
         if c.case == "park-cantilever" and c.code in ("exudyn-ancf", "scikit-fem") and c.reference
         for n in (10, 20, 40)
     )
-    silent = dict.fromkeys(("frequency", "reference", "full", "difference", "uncertainty", "elements", "order", "mac"))
+    silent = dict.fromkeys(("value", "reference", "full", "difference", "uncertainty", "elements", "order", "mac"))
     said = {"mode": 0, "family": "", "ordinal": 0, "version": "", "verdict": "not run", "reason": "not installed"}
     absent = {(c.case, c.omega): replace(c, **said, **silent) for c in plain.cells if c.code == ABSENT}
     return replace(plain, cells=(*(c for c in plain.cells if c.code != ABSENT), *absent.values()), levels=levels)
@@ -54,10 +54,10 @@ def kept(file: Path) -> Path:
     for k in range(7):
         cells = []
         for c in first.cells:
-            if c.frequency and (d := c.difference) is not None:
+            if c.value and (d := c.difference) is not None:
                 if k >= 4 and (c.case, c.code) == ("tip-mass", "scikit-fem"):
                     new = (1 + d) * (1 + 1e-6) - 1
-                    c = replace(c, frequency=c.frequency * (1 + 1e-6), difference=new)
+                    c = replace(c, value=c.value * (1 + 1e-6), difference=new)
                 if k >= 5 and c.case == "wright-flapwise":
                     c = replace(c, difference=(1 + d) / (1 + 1e-5) - 1)
             if not (k == 6 and c.code == LOST):

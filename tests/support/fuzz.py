@@ -248,7 +248,7 @@ def _run():
             "code": code,
             "version": "1",
             "role": "code",
-            "frequency": 11.7,
+            "value": 11.7,
             "reference": 11.7,
             "difference": 1e-6,
             "uncertainty": 1e-7,
@@ -263,7 +263,7 @@ def _run():
         return Cell(**row | more)
 
     empty = {
-        "frequency": None,
+        "value": None,
         "reference": None,
         "difference": None,
         "uncertainty": None,

@@ -19,7 +19,7 @@ from southwell.cases.regression.history import Entry
 def _cell(mode: int, **changes: Any) -> Cell:
     values: dict[str, Any] = {
         "case": "canary", "omega": 10.0, "mode": mode, "family": "flapwise", "code": "bird", "version": "1", "role": "code",
-        "frequency": 10.0 * mode, "reference": 10.0 * mode, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3,
+        "value": 10.0 * mode, "reference": 10.0 * mode, "difference": 1e-5, "uncertainty": 1e-6, "target": 1e-3,
         "verdict": "pass", "shares": "nothing",
     }  # fmt: skip
     return Cell(**{**values, **changes})
@@ -37,8 +37,8 @@ AFTER: dict[str, Run] = {
     "a mode that is new and fails": replace(BEFORE, cells=(*BEFORE.cells, _cell(4, verdict="fail", difference=2e-3))),
     "a target that was loosened": replace(BEFORE, cells=(_cell(1, target=2e-3), *BEFORE.cells[1:])),
     "a fault that is no longer detected": replace(BEFORE, controls=(_fault(()),)),
-    "a frequency that moved": replace(BEFORE, cells=(_cell(1, frequency=10.0 * (1 + 1e-6)), *BEFORE.cells[1:])),
-    "a code that was not run": replace(BEFORE, cells=(_cell(0, family="", frequency=None, verdict="not run"),)),
+    "a frequency that moved": replace(BEFORE, cells=(_cell(1, value=10.0 * (1 + 1e-6)), *BEFORE.cells[1:])),
+    "a code that was not run": replace(BEFORE, cells=(_cell(0, family="", value=None, verdict="not run"),)),
 }
 
 
@@ -89,9 +89,7 @@ def _point(point: Any, **changes: Any) -> Any:
 def _rounded(right: Any) -> Any:
     def wrong(*args: Any) -> Entry:
         found = right(*args)
-        return replace(
-            found, cells=tuple(_point(p, frequency=p.frequency and round(p.frequency, 3)) for p in found.cells)
-        )
+        return replace(found, cells=tuple(_point(p, value=p.value and round(p.value, 3)) for p in found.cells))
 
     return wrong
 

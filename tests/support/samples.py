@@ -33,7 +33,7 @@ def cell(**changes: object) -> Cell:
         "code": "alpha",
         "version": "2.1",
         "role": "code",
-        "frequency": 11.70006,
+        "value": 11.70006,
         "reference": 11.7,
         "difference": 5.1e-6,
         "uncertainty": 2e-6,
@@ -49,7 +49,7 @@ def cell(**changes: object) -> Cell:
 
 def empty(verdict: str, reason: str, **changes: object) -> Cell:
     """A cell without an answer."""
-    blank = dict.fromkeys(("frequency", "reference", "difference", "uncertainty", "full", "elements", "order", "mac"))
+    blank = dict.fromkeys(("value", "reference", "difference", "uncertainty", "full", "elements", "order", "mac"))
     return cell(mode=0, family="", ordinal=0, verdict=verdict, reason=reason, **blank, **changes)
 
 
@@ -78,7 +78,7 @@ def run() -> Run:
                         ordinal=(mode + 1) // 2,
                         code=code,
                         version=version,
-                        frequency=f * (1 + d),
+                        value=f * (1 + d),
                         reference=f,
                         full=f,
                         difference=d,
@@ -98,7 +98,7 @@ def run() -> Run:
         cell(
             **short,
             code="alpha",
-            frequency=2.01,
+            value=2.01,
             difference=5e-3,
             uncertainty=1e-4,
             verdict="fail",
@@ -107,7 +107,7 @@ def run() -> Run:
         cell(
             **short,
             code="beta",
-            frequency=2.001,
+            value=2.001,
             difference=5e-4,
             uncertainty=None,
             verdict="inconclusive",

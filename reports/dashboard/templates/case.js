@@ -1,7 +1,7 @@
 "use strict";
 // A case: its words, Campbell diagram, convergence, moving mode shapes, times, every mode and code.
 
-const solved = DATA.cells.filter((c) => c.f !== null && c.mode);
+const solved = DATA.cells.filter((c) => c.f !== null && c.mode && c.quantity === "frequency");
 const inWords = (speed) => at(speed, DATA.speed);
 
 function casePage() {
@@ -27,7 +27,7 @@ function differences() {
     const field = (name, code) => {
       const c = here.find((cell) => cell.code === code && (cell.name === name || !cell.mode));
       return c ? { verdict: c.verdict, text: c.text, label: `${name}, ${code}: ${DATA.verdicts[c.verdict].name} ${c.text}`,
-        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${DATA.frequency}, core ${digits(c.ref, 8)} · target ${c.target}`,
+        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${c.unit}, core ${digits(c.ref, 8)} · target ${c.target}`,
           c.reason ? make("p", { class: "muted" }, c.reason) : null] } : null;
     };
     const answering = columns.filter((name) => !silent.includes(name));
@@ -94,11 +94,11 @@ function convergence() {
   const block = make("section", {}, make("h2", {}, "Convergence")), place = make("div", {});
   const keys = unique(DATA.levels.map((v) => `${v[1]}|${v[2]}`)).sort((a, b) => split(b)[0] - split(a)[0] || split(a)[1] - split(b)[1]);
   if (!keys.length) { block.append(make("p", { class: "muted" }, "No refinements in this run.")); return block; }
-  const named = ([speed, mode]) => `${DATA.cells.find((c) => c.speed === speed && c.mode === mode)?.name || `mode ${mode}`}, ${inWords(speed)}`;
+  const named = ([speed, mode]) => `${DATA.cells.find((c) => c.speed === speed && c.mode === mode && c.quantity === "frequency")?.name || `mode ${mode}`}, ${inWords(speed)}`;
   function draw(key) {
     const [speed, mode] = split(key), levels = DATA.levels.filter((v) => v[1] === speed && v[2] === mode);
     const series = unique(levels.map((v) => v[0])).map((code, k) => {
-      const core = DATA.cells.find((c) => c.code === code && c.speed === speed && c.mode === mode)?.ref;
+      const core = DATA.cells.find((c) => c.code === code && c.speed === speed && c.mode === mode && c.quantity === "frequency")?.ref;
       const points = levels.filter((v) => v[0] === code && core).map((v) => [v[3], Math.max(Math.abs(v[4] / core - 1), 1e-14)]).sort((a, b) => a[0] - b[0]);
       return { name: code, colour: colour(k), dash: dash(k), points, marks: true };
     }).filter((s) => s.points.length);
@@ -161,7 +161,7 @@ function spanwise(rest, mode) {
 function everything() {
   const lines = DATA.cells.map((c) => row(inWords(c.speed), c.name, c.code, judged(c.verdict), c.text, digits(c.f, 8), c.elements, digits(c.order, 3), make("td", { class: "reason" }, c.reason)));
   MAIN.append(make("details", {}, make("summary", {}, `Every number: ${lines.length} cells`),
-    table(["speed", "mode", "code", "verdict", "difference ± uncertainty", `frequency, ${DATA.frequency}`, "elements", "order", "why"], lines, { id: "everything" })));
+    table(["speed", "mode", "code", "verdict", "difference ± uncertainty", `value; frequencies in ${DATA.frequency}`, "elements", "order", "why"], lines, { id: "everything" })));
 }
 
 casePage();

@@ -22,7 +22,7 @@ from southwell.reports.shared.units import BY_KEY
 from ...reports.cli.test_cli import southwell
 from .test_history import CELL, RUN
 
-BEAM = tuple(replace(CELL, mode=k, frequency=10.0 * k) for k in (1, 2, 3))
+BEAM = tuple(replace(CELL, mode=k, value=10.0 * k) for k in (1, 2, 3))
 OTHER = tuple(replace(c, code="other") for c in BEAM)
 BEFORE = replace(RUN, cells=BEAM + OTHER)
 
@@ -43,10 +43,25 @@ def test_the_same_run_passes() -> None:
 
 @pytest.mark.parametrize(("change", "listed"), [(0.9e-9, False), (1.1e-9, True), (-1.1e-9, True), (1e-3, True)])
 def test_a_frequency_moved_is_listed_and_counts_if_asked_for(change: float, listed: bool) -> None:
-    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.0 * (1 + change))))
+    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 1, value=20.0 * (1 + change))))
     assert [(c.after.mode, c.moved) for c in found.moved] == ([(2, pytest.approx(change, rel=1e-6))] if listed else [])
     assert found.passed()
     assert found.passed(strict=True) is not listed
+
+
+DAMPING = replace(CELL, mode=1, quantity="damping", value=0.14, reference=0.14, difference=0.0, full=None)
+
+
+@pytest.mark.parametrize(("value", "moved"), [(0.14 + 0.9e-9, False), (0.14 + 1.1e-9, True), (0.0, True)])
+def test_a_damping_ratio_is_another_cell_and_moves_by_its_difference(value: float, moved: bool) -> None:
+    before = replace(BEFORE, cells=(*BEFORE.cells, DAMPING))
+    found = compared(replace(BEFORE, cells=(*BEFORE.cells, replace(DAMPING, value=value))), before)
+    changes = [pytest.approx(value - 0.14, rel=1e-6)] if moved else []
+    assert [c.moved for c in found.moved] == changes
+    lost = compared(BEFORE, before)
+    assert [(g.point.mode, g.point.quantity) for g in lost.gone] == [(1, "damping")]
+    worse = compared(replace(before, cells=(*BEFORE.cells, replace(DAMPING, verdict="fail"))), before)
+    assert [(c.after.mode, c.after.quantity) for c in worse.worse] == [(1, "damping")]
 
 
 VERDICTS = ("pass", "coarse", "known difference", "estimate", "inconclusive", "fail")
@@ -71,7 +86,7 @@ def test_a_cell_that_was_not_there_counts_if_it_is_a_miss(verdict) -> None:
 
 @pytest.mark.parametrize("verdict", ["not run", "not applicable", "fail"])
 def test_a_code_that_answers_no_more_counts(verdict) -> None:
-    silent = replace(CELL, code="other", mode=0, family="", frequency=None, verdict=verdict)
+    silent = replace(CELL, code="other", mode=0, family="", value=None, verdict=verdict)
     found = compared(replace(BEFORE, cells=(*BEAM, silent)))
     assert [(g.point.code, g.point.mode, g.instead) for g in found.gone] == [("other", k, verdict) for k in (1, 2, 3)]
     assert not found.passed()
@@ -79,7 +94,7 @@ def test_a_code_that_answers_no_more_counts(verdict) -> None:
 
 def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> None:
     assert [g.instead for g in compared(replace(BEFORE, cells=BEAM)).gone] == [None] * 3
-    silent = replace(BEFORE, cells=(*BEAM, replace(CELL, code="other", mode=0, frequency=None, verdict="not run")))
+    silent = replace(BEFORE, cells=(*BEAM, replace(CELL, code="other", mode=0, value=None, verdict="not run")))
     assert compared(replace(BEFORE, cells=BEAM), silent).passed()
     installed = compared(BEFORE, silent)
     assert installed.passed()
@@ -165,7 +180,7 @@ def test_junit_of_a_run_alone_and_what_is_skipped() -> None:
 
 
 def test_junit_when_moves_count() -> None:
-    after = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
+    after = replace(BEFORE, cells=at(BEFORE.cells, 1, value=20.1))
     for strict in (False, True):
         root = ElementTree.fromstring(junit.render(after, compared(after), strict))
         assert len(root.findall(".//failure")) == int(strict)
@@ -188,8 +203,8 @@ def test_annotations_name_the_case_s_file_and_are_escaped(tmp_path: Path) -> Non
 
 
 def test_a_summary_s_tables_are_cut_and_say_so() -> None:
-    many = tuple(replace(CELL, mode=k, frequency=float(k)) for k in range(1, 72))
-    after = tuple(replace(c, frequency=(c.frequency or 0.0) * (1 + 1e-6)) for c in many)
+    many = tuple(replace(CELL, mode=k, value=float(k)) for k in range(1, 72))
+    after = tuple(replace(c, value=(c.value or 0.0) * (1 + 1e-6)) for c in many)
     found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
     shown = gate_text.markdown(found, False, {})
     assert "✔ gate passed: 71 cells" in shown
@@ -203,7 +218,7 @@ def folders(tmp_path: Path) -> Callable[[str], str]:
     for name, run in {"before": BEFORE, "after": BAD}.items():
         (tmp_path / name).mkdir()
         results.write(tmp_path / name / "results.jsonl", run)
-    moved = replace(BEFORE, cells=at(BEFORE.cells, 1, frequency=20.1))
+    moved = replace(BEFORE, cells=at(BEFORE.cells, 1, value=20.1))
     results.write(tmp_path / "moved.jsonl", moved)
     more = replace(BEFORE, cells=(*BEAM, *(replace(c, case="another") for c in BEAM)))
     results.write(tmp_path / "two.jsonl", more)
@@ -247,8 +262,8 @@ def test_a_failed_baseline_is_refused_unless_it_is_accepted(folders, capsys: pyt
 
 
 def test_the_verdict_comes_first_and_tables_are_short_and_in_the_units_of_the_case() -> None:
-    many = tuple(replace(CELL, mode=k, omega=np.pi, frequency=2.0 * np.pi * k) for k in range(1, 72))
-    after = tuple(replace(c, frequency=(c.frequency or 0.0) * (1 + 1e-3)) for c in many)
+    many = tuple(replace(CELL, mode=k, omega=np.pi, value=2.0 * np.pi * k) for k in range(1, 72))
+    after = tuple(replace(c, value=(c.value or 0.0) * (1 + 1e-3)) for c in many)
     found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
     (table,) = gate_text.tables(found, {CELL.case: BY_KEY["rpm"]}, 120)
     assert isinstance(table, Table)

@@ -26,7 +26,7 @@ CELL = Cell(
     code="some-code",
     version="1.0",
     role="code",
-    frequency=11.71095,
+    value=11.71095,
     reference=11.71,
     difference=8.1e-5,
     uncertainty=1e-6,
@@ -34,7 +34,7 @@ CELL = Cell(
     verdict="pass",
 )
 RUN = Run(
-    cells=(CELL, replace(CELL, mode=0, family="", ordinal=0, frequency=None, verdict="not run")),
+    cells=(CELL, replace(CELL, mode=0, family="", ordinal=0, value=None, verdict="not run")),
     versions={"some-code": "1.0"},
     controls=(Control("frozen frame", "core", "", "+31 %", "beam", 10.0, ("some-code",), -0.24),),
 )
@@ -51,7 +51,7 @@ def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
     assert found == Entry(
         "abc", "2026-02-03T04:05:06+00:00", "a machine", {"some-code": "1.0"}, (beam, none), (detection,)
     )
-    assert beam.key == ("beam", "some-code", 10.0, 1)
+    assert beam.key == ("beam", "some-code", 10.0, 1, "frequency", "")
 
 
 WRITER = """
@@ -68,7 +68,7 @@ for k in range(int(times)):
 
 def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     # some 150 KB: more than a pipe or a block of a disk takes at once
-    cells = tuple(replace(CELL, mode=k, frequency=1 / (k + 3)) for k in range(1, 1501))
+    cells = tuple(replace(CELL, mode=k, value=1 / (k + 3)) for k in range(1, 1501))
     source = tmp_path / "source.jsonl"
     history.append(source, history.entry(replace(RUN, cells=cells), "source", "a machine", MADE))
     assert source.stat().st_size > 100_000

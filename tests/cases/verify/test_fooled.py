@@ -191,7 +191,7 @@ def test_a_copy_is_recognised_although_one_speed_is_converged() -> None:
 
 def test_a_large_known_difference_is_no_comparison() -> None:
     """A code without geometric stiffness is 71 % off, and declares it."""
-    cell = samples.cell(verdict="known difference", difference=-1e-5, frequency=3.4, reference=3.4, full=11.7)
+    cell = samples.cell(verdict="known difference", difference=-1e-5, value=3.4, reference=3.4, full=11.7)
     assert abs(summary.size(cell) or 0.0) > 0.7
     assert summary.status(Run((cell,))) == 1
     assert summary.status(Run((replace(cell, full=3.42),))) == 0
@@ -245,9 +245,7 @@ def test_a_wider_target_of_a_table_is_bounded_and_shown() -> None:
     text = (Path(published.__file__).parent / "openfast.toml").read_text(encoding="utf-8")
     with pytest.raises(published.TableError, match=r"<= 0\.02"):
         published.parse(text.replace("target = 0.02", "target = 0.03"), "x.toml")
-    wide = samples.cell(
-        role="table", code="author/one", difference=1.4e-2, frequency=11.86, target=2e-2, shares="nothing"
-    )
+    wide = samples.cell(role="table", code="author/one", difference=1.4e-2, value=11.86, target=2e-2, shares="nothing")
     page = Run((wide,))
     assert "1.40 % (target 2.00 %)" in matrix_report.heat(page)
     assert "(target 2.00 %)" in comparison([wide], matrix_report.units(page, "beam"))

@@ -90,7 +90,7 @@ def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) 
         assert {(c.omega > 0, c.verdict) for c in bad} == {(False, verdict), (True, verdict)}, (key, bad)
         assert all(c.reason for c in bad)
         good = of(found, "southwell-equation")
-        assert [(c.frequency, c.verdict) for c in good] == [(c.frequency, c.verdict) for c in alone]
+        assert [(c.value, c.verdict) for c in good] == [(c.value, c.verdict) for c in alone]
         assert summary.status(found) == (1 if verdict == "fail" else 0)
 
 

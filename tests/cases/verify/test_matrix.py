@@ -79,7 +79,7 @@ def test_a_right_code_passes_with_numbers_to_show_for_it(case) -> None:
         assert c.mac == pytest.approx(1.0, abs=1e-3)
         assert c.full == pytest.approx(c.reference)
     exact = np.repeat([3.51601527, 22.03449156], 2)  # Blevins, Formulas for Natural Frequency and Mode Shape, table 8-1
-    assert [c.frequency for c in cells] == pytest.approx(exact.tolist(), rel=1e-7)
+    assert [c.value for c in cells] == pytest.approx(exact.tolist(), rel=1e-7)
     assert {(v.mode, v.elements) for v in run.levels if v.code == "good"} >= {
         (m, n) for m in (1, 4) for n in (10, 20, 40)
     }
@@ -130,7 +130,7 @@ def test_modes_without_a_partner_fail(case) -> None:
     for cell in of(solve(case(), "analytic:BACKWARDS"), "backwards"):
         assert cell.verdict == "fail"
         assert cell.reason.startswith("no partner: its most similar mode, at")
-        assert cell.frequency is None
+        assert cell.value is None
     assert {c.verdict for c in of(solve(case(), "analytic:SIDEWAYS"), "sideways")} == {"fail"}
 
 
@@ -168,7 +168,7 @@ def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case
 def test_a_failing_code_is_one_outcome_among_others(case, code: str, verdict: str, phrase: str) -> None:
     run = solve(case("[2]"), code, "analytic:TWIN", timeout=10.0)
     (cell,) = of(run, "misbehaving")
-    assert (cell.verdict, cell.mode, cell.frequency) == (verdict, 0, None)
+    assert (cell.verdict, cell.mode, cell.value) == (verdict, 0, None)
     assert phrase in cell.reason
     assert {c.verdict for c in of(run, "twin")} == {"pass"}
 
@@ -194,8 +194,8 @@ def test_processes_and_threads_agree(case) -> None:
     with ProcessPoolExecutor(1) as executor:
         far = matrix.run(blades(case()), ["analytic:GOOD"], executor)
     near = solve(case(), "analytic:GOOD")
-    assert [(c.code, c.mode, c.frequency, c.verdict) for c in far.cells] == [
-        (c.code, c.mode, c.frequency, c.verdict) for c in near.cells
+    assert [(c.code, c.mode, c.value, c.verdict) for c in far.cells] == [
+        (c.code, c.mode, c.value, c.verdict) for c in near.cells
     ]
 
 
@@ -214,7 +214,7 @@ def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     reason = r"speeds: 1600 rad/s: no steady state: .*: give lower speeds"
     assert all(re.fullmatch(reason, c.reason) for c in bad if c.verdict == "fail")
     answers = {
-        name: [(c.omega, c.mode, c.frequency, c.verdict) for c in run.cells if (c.case, c.code) == (name, "good")]
+        name: [(c.omega, c.mode, c.value, c.verdict) for c in run.cells if (c.case, c.code) == (name, "good")]
         for name in ("rest", "beside")
     }
     assert [c for c in answers["rest"] if c[0] == 0] == answers["beside"]

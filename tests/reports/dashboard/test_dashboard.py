@@ -125,9 +125,9 @@ def test_verdicts_colours_are_told_apart_by_the_colour_blind_and_text_on_them_is
 def test_cores_lines_are_cores_where_a_code_gives_another_mode_the_same_name() -> None:
     """A code that leaves effects out is compared with core without them, whose first mode is core's second."""
     cells = (
-        *(samples.cell(omega=w, frequency=f, reference=f, full=f) for w, f in ((0.0, 10.0), (10.0, 12.0))),
+        *(samples.cell(omega=w, value=f, reference=f, full=f) for w, f in ((0.0, 10.0), (10.0, 12.0))),
         *(samples.cell(omega=w, mode=2, family="axial", full=f, reference=f) for w, f in ((0.0, 60.0), (10.0, 61.0))),
-        samples.cell(omega=10.0, code="odd", frequency=55.0, reference=55.0, full=61.0, verdict="known difference"),
+        samples.cell(omega=10.0, code="odd", value=55.0, reference=55.0, full=61.0, verdict="known difference"),
     )
     lines = of_case(Run(cells), "beam")["lines"]
     assert lines == [
@@ -208,7 +208,7 @@ def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
         (5, CORE, "wright-flapwise"),
     }
     assert [m["change"] for m in found] == [pytest.approx(1e-6, rel=1e-6), pytest.approx(1e-5, rel=1e-6)]
-    wright = {(c.omega, c.mode) for c in run().cells if c.case == "wright-flapwise" and c.frequency}
+    wright = {(c.omega, c.mode) for c in run().cells if c.case == "wright-flapwise" and c.value}
     assert next(m["count"] for m in found if m["who"] == CORE) == len(wright)
 
 
@@ -221,7 +221,7 @@ def test_every_number_is_in_the_history(tmp_path: Path) -> None:
         if c.code == LOST:
             assert verdicts[6] is None
         elif (c.case, c.code) != ("tip-mass", "scikit-fem"):
-            assert frequencies == c.frequency
+            assert frequencies == c.value
 
 
 @pytest.mark.slow

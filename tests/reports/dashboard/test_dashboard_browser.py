@@ -65,9 +65,7 @@ def test_a_fields_sign_and_value_are_those_of_its_worst_cell(tab: Any, site: Pat
     fields = dict(zip(heads, row.locator("th, td").all_inner_texts(), strict=True))
     cells = [c for c in run().cells if (c.case, c.code) == ("park-cantilever", "pybmodes")]
     assert {c.verdict for c in cells} == {"known difference", "pass"}
-    worst = max(
-        abs(c.frequency / c.full - 1) for c in cells if c.verdict == "known difference" and c.frequency and c.full
-    )
+    worst = max(abs(c.value / c.full - 1) for c in cells if c.verdict == "known difference" and c.value and c.full)
     assert fields["pybmodes"].split("\n") == ["≈", f"+{100 * worst:.3f} %"]
     assert fields[ABSENT].startswith("○")
 
@@ -296,7 +294,7 @@ def test_a_cases_differences_and_convergence(tab: Any, site: Path) -> None:
     assert cell.difference is not None
     assert cell.uncertainty is not None
     assert field.inner_text() == f"✔ −{100 * abs(cell.difference):.4f} %\n± {100 * cell.uncertainty:.4f} %"
-    assert f"{cell.frequency:.6f}" in tab.locator("#detail").inner_text()
+    assert f"{cell.value:.6f}" in tab.locator("#detail").inner_text()
     tab.locator("details summary", has_text="Every number").press("Enter")
     all_ = [c for c in run().cells if c.case == "park-cantilever"]
     assert tab.locator("#everything tbody tr").count() == len(all_)
@@ -335,7 +333,7 @@ def test_the_history(tab: Any, site: Path) -> None:
     assert [re.split(r"\s*\t\s*", s)[1] for s in steps] == ["core", "scikit-fem"]
     assert "scikit-fem 12 → 13" in steps[1]
     gone = tab.locator("#who tbody tr").all_inner_texts()  # from the sixth to the seventh
-    answers = [c for c in run().cells if c.code == LOST and c.frequency]
+    answers = [c for c in run().cells if c.code == LOST and c.value]
     assert len(gone) == 1
     assert gone[0].split() == [LOST, str(len(answers))]
     tab.select_option("select[name=from]", "3")

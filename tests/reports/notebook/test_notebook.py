@@ -95,7 +95,7 @@ def test_a_verification_has_a_row_for_every_cell_and_a_verdict(blade: southwell.
     assert len(mine) == 4
     assert set(mine["verdict"]) == {"pass"}
     assert set(mine["omega_rad_s"]) == {0.0, OMEGA}
-    np.testing.assert_allclose(mine["frequency"] / mine["reference"] - 1.0, mine["difference"], atol=1e-12)
+    np.testing.assert_allclose(mine["value"] / mine["reference"] - 1.0, mine["difference"], atol=1e-12)
     assert found.passed
     evidence = found.evidence().set_index("code")
     assert evidence.loc["exact-beam", "modes"] == 4
@@ -136,6 +136,6 @@ def test_a_verification_has_faults_limits_and_a_folder(blade: southwell.Blade, t
     asked = {"omega": OMEGA, "codes": ["exact-beam"], "modes": 1, "faults": "no hub radius", "out": tmp_path}
     result = southwell.verify(blade, **asked, time_limit=1e-3)
     timed_out = [c for c in result.run.cells if c.code == "exact-beam"]
-    assert {(c.verdict, c.frequency) for c in timed_out} == {("inconclusive", None)}
+    assert {(c.verdict, c.value) for c in timed_out} == {("inconclusive", None)}
     assert [(c.control, bool(c.detected_by)) for c in result.run.controls] == [("no hub radius", True)]
     assert results.read(tmp_path / "results.jsonl") == result.run

@@ -67,7 +67,7 @@ def test_one_command_writes_all_pages(tmp_path: Path, capsys: pytest.CaptureFixt
     write(tmp_path / RESULTS, run)
     (tmp_path / "report.md").write_text("# Report\n")
     earlier = tmp_path / "earlier.jsonl"
-    write(earlier, replace(run, cells=tuple(replace(c, frequency=11.8) for c in run.cells)))
+    write(earlier, replace(run, cells=tuple(replace(c, value=11.8) for c in run.cells)))
     status, out, err = southwell(f"pages {tmp_path} --document SW-001 --since {earlier}", capsys)
     assert (status, err) == (0, "")
     for name in ("summary.md", "report.html", "summary.html", "dashboard/index.html"):

@@ -30,7 +30,7 @@ def cell(code: str, case: str, difference: float | None, verdict: Verdict, mode:
         code=code,
         version="9.9",
         role="code",
-        frequency=f,
+        value=f,
         reference=None if f is None else 100.0,
         difference=difference,
         uncertainty=None if f is None else 1e-5,

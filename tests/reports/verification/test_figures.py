@@ -72,7 +72,7 @@ def test_campbell_lines_run_through_cores_values_and_markers_are_the_codes(units
     for code, line in marks.items():
         mine = [c for c in samples.run().cells if c.code == code and c.case == "beam"]
         x, y = points(line)
-        np.testing.assert_allclose(y, [(c.frequency or 0.0) * units.frequencies for c in mine])
+        np.testing.assert_allclose(y, [(c.value or 0.0) * units.frequencies for c in mine])
         np.testing.assert_allclose(x, [c.omega * units.speeds for c in mine])
 
 
@@ -178,7 +178,7 @@ def test_labels_are_not_cut_off() -> None:
 
 def test_a_wide_target_is_told_clear_of_the_next_heading() -> None:
     """A table held to 2 % only, whose target lies at the right edge; a tiny one is not told in percent."""
-    table = samples.cell(role="table", code="table", difference=0.014, target=0.02, frequency=11.86)
+    table = samples.cell(role="table", code="table", difference=0.014, target=0.02, value=11.86)
     wide = Run((table, samples.cell(code="twin", difference=1e-13, target=1e-8)))
     for run, phrase in ((wide, "target 2.00 %"), (Run((samples.cell(target=1e-8, difference=1e-13),)), "target 1e-08")):
         figure = drawn(differences(run, "beam", RAD_S))

@@ -132,12 +132,12 @@ def test_the_papers_table_is_one_line_that_counts_the_values_it_rounds_to() -> N
     cells = [
         *(
             samples.cell(
-                **given, code=paper_table.TABLE, role="table", mode=k, ordinal=k, frequency=f, uncertainty=half / f
+                **given, code=paper_table.TABLE, role="table", mode=k, ordinal=k, value=f, uncertainty=half / f
             )
             for k, (f, half) in enumerate(printed, 1)
         ),
         *(
-            samples.cell(**given, code="core", role="discretisation", mode=k, ordinal=k, frequency=f)
+            samples.cell(**given, code="core", role="discretisation", mode=k, ordinal=k, value=f)
             for k, f in enumerate(solved, 1)
         ),
     ]
@@ -147,7 +147,7 @@ def test_the_papers_table_is_one_line_that_counts_the_values_it_rounds_to() -> N
 
 def test_a_failure_without_a_number_is_told_first_too() -> None:
     crash = samples.cell(
-        code="crashed", verdict="fail", frequency=None, difference=None, uncertainty=None, reason="exit status 0"
+        code="crashed", verdict="fail", value=None, difference=None, uncertainty=None, reason="exit status 0"
     )
     run = Run((samples.cell(), crash, crash))
     assert evidence.urgent(run) == ["Failed without a frequency: crashed (beam): exit status 0."]
@@ -260,7 +260,7 @@ def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
 
 def test_a_code_with_fewer_effects_shows_what_it_lacks_in_all_not_like_with_like() -> None:
     cell = samples.cell(
-        frequency=11.82,
+        value=11.82,
         reference=11.8199,
         full=11.7,
         difference=8.5e-6,
@@ -273,7 +273,7 @@ def test_a_code_with_fewer_effects_shows_what_it_lacks_in_all_not_like_with_like
 def test_a_discretisation_shows_its_own_error_not_the_effects_it_lacks() -> None:
     cell = samples.cell(
         role="discretisation",
-        frequency=189.67,
+        value=189.67,
         reference=189.92,
         full=189.82,
         difference=189.67 / 189.92 - 1,

@@ -24,7 +24,7 @@ NOT = "model error not visible at u_val = 20.0 %: E = +10.00 %, u_val from u_num
 def datum(uncertainty: float, reason: str, **changes: object) -> results.Cell:
     values: dict[str, object] = {
         "code": "rig", "version": "measured, in rig.csv", "role": "measured", "verdict": "measured", "shares": "",
-        "omega": 13.0, "mode": 2, "family": "flapwise", "ordinal": 1, "frequency": 18.0, "reference": 20.0, "full": 20.0,
+        "omega": 13.0, "mode": 2, "family": "flapwise", "ordinal": 1, "value": 18.0, "reference": 20.0, "full": 20.0,
         "difference": -0.1, "uncertainty": uncertainty, "reason": reason, "elements": None, "order": None, "mac": None,
     }  # fmt: skip
     return samples.cell(**{**values, **changes})
@@ -86,7 +86,7 @@ def entry(run: Run) -> history.Entry:
 
 def test_the_gate_counts_nothing_about_them() -> None:
     """Not that they come, go, move, or show more of the model's error."""
-    moved = replace(WITH, cells=(*PLAIN.cells, replace(SEEN, frequency=15.0, difference=-0.25, target=0.5)))
+    moved = replace(WITH, cells=(*PLAIN.cells, replace(SEEN, value=15.0, difference=-0.25, target=0.5)))
     for before, after in ((PLAIN, WITH), (WITH, PLAIN), (WITH, moved), (moved, WITH)):
         found = gate.compare(entry(before), entry(after))
         assert found.passed(strict=True)
@@ -108,6 +108,10 @@ def test_only_measured_data_are_measured(tmp_path: Path) -> None:
         with pytest.raises(checks.RowError):
             checks.check(cell)
     checks.check(replace(SEEN, verdict="not applicable"))
+    checks.check(replace(SEEN, quantity="damping", value=-0.1))
+    for cell in (replace(SEEN, quantity="colour"), replace(SEEN, value=-0.1)):
+        with pytest.raises(checks.RowError):
+            checks.check(cell)
     path = tmp_path / "results.jsonl"
     results.write(path, replace(WITH, plan=(Planned("beam", "rig", 0, 0),)))
     assert results.read(path).cells == WITH.cells

@@ -1,0 +1,35 @@
+"""The quantities of a mode that are compared, each with its unit and what a difference is relative to."""
+
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One quantity.
+
+    Attributes:
+        unit: SI; empty for a plain number.
+        scale: what a difference is divided by, in ``unit``; None: the reference.
+    """
+
+    unit: str
+    scale: float | None
+
+
+QUANTITIES = {
+    "frequency": Quantity("rad/s", None),
+    "damping": Quantity("", 1.0),
+}
+"""Names in results → quantities. The difference of two damping ratios is absolute: it is a fraction of critical damping."""
+
+
+def difference(name: str, value: float, reference: float) -> float:
+    """The difference of a value from its reference, relative to the scale of its quantity."""
+    scale = QUANTITIES[name].scale
+    return value / reference - 1.0 if scale is None else (value - reference) / scale
+
+
+def reference(name: str, value: float, away: float) -> float:
+    """The reference from which ``value`` differs by ``away``."""
+    scale = QUANTITIES[name].scale
+    return value / (1.0 + away) if scale is None else value - away * scale
