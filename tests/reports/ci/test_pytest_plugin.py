@@ -113,7 +113,7 @@ import pytest
 from southwell import modes
 
 def solve(blade, omega):
-    found = modes(blade, omega, 60, 10)
+    found = modes(blade, omega, elements=60, modes=10)
     return 1.01 * found.frequencies[::-1], found.shapes[::-1]
 
 @pytest.mark.southwell(solve=solve, cases=["quick.toml"], known={known})
