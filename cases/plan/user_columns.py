@@ -1,11 +1,11 @@
 """Results without an adapter as columns of the matrix: results of a program are judged, measured ones are not.
 
 A measured frequency D is compared with core's frequency S: the comparison error is E = S − D, and its uncertainty u_val
-follows from the numerical solution, the inputs and the data (ASME V&V 20-2009). Measurements are rarely taken at the
-speeds of a case, so core is solved at the measured speeds.
+follows from the numerical solution, the inputs and the data (ASME V&V 20-2009). Results are rarely given at the speeds of a
+case, so core is also solved at theirs.
 """
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from math import inf
@@ -41,23 +41,38 @@ def columns(variant: Variant, user_results: Sequence[UserResults], compare: Comp
             work = partial(_measured, head, variant.blade, compare, mine)
         else:
             head = Head(variant.name, one.name, f"from {file}", "code", compare.target, "nothing")
-            work = partial(_rows, head, mine)
+            work = partial(_rows, head, variant.blade, compare, mine)
         out.append(Column(one.name, ALL_EFFECTS, head, work, due="somewhere"))
     return out
 
 
-def _rows(head: Head, given: Sequence[Given], core: References) -> Rows:
+def _rows(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
+    """A cell for every frequency of a program, at the case's speed if the row's speed rounds to it, else at the row's."""
     cells = []
-    for omega, reference in core:
-        for row in (row for row in given if at(row, omega)):
-            k = _place(row, reference)
-            sure = Estimate(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega))
-            cells.append(
-                _without_partner(head, omega, row, reference)
-                if k is None
-                else _unless_misnamed(printed(head, omega, k, reference, sure, ""), row, k, reference)
-            )
+    for row, omega, reference in _at_their_speeds(blade, compare, given, core):
+        if isinstance(reference, Failure):
+            cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {reference.reason}"))
+            continue
+        k = _place(row, reference)
+        sure = Estimate(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega))
+        cells.append(
+            _without_partner(head, omega, row, reference)
+            if k is None
+            else _unless_misnamed(printed(head, omega, k, reference, sure, ""), row, k, reference)
+        )
     return cells, []
+
+
+def _at_their_speeds(
+    blade: Blade, compare: Compare, given: Sequence[Given], core: References
+) -> Iterator[tuple[Given, float, Reference | Failure]]:
+    """Each row with its speed and core's solution there; speeds that the case does not have are solved, each once."""
+    solved: dict[float, Reference | Failure] = dict(core)
+    for row in given:
+        omega = next((omega for omega, _ in core if at(row, omega)), row.omega)
+        if omega not in solved:
+            (solved[omega],) = references(blade, [omega], compare, {ALL_EFFECTS})[ALL_EFFECTS]
+        yield row, omega, solved[omega]
 
 
 def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Cell:
@@ -80,21 +95,15 @@ def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Ce
 
 def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
     """A cell for every measured frequency, at the case's speed if the row's speed rounds to it, else at the row's."""
-    cells, solved = [], dict(core)
-    for row in given:
-        omega = next((omega for omega, _ in core if at(row, omega)), row.omega)
-        if omega not in solved:
-            (found,) = references(blade, [omega], compare, {ALL_EFFECTS})[ALL_EFFECTS]
-            if isinstance(found, Failure):
-                cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {found.reason}"))
-                continue
-            solved[omega] = found
-        k = _place(row, solved[omega])
+    cells = []
+    for row, omega, reference in _at_their_speeds(blade, compare, given, core):
+        if isinstance(reference, Failure):
+            cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {reference.reason}"))
+            continue
+        k = _place(row, reference)
         datum = Datum(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega), row.inputs)
         cells.append(
-            _without_partner(head, omega, row, solved[omega])
-            if k is None
-            else measured(head, omega, k, solved[omega], datum)
+            _without_partner(head, omega, row, reference) if k is None else measured(head, omega, k, reference, datum)
         )
     return cells, []
 

@@ -21,8 +21,8 @@ MARKS: tuple[tuple[Callable[[Text], bool], str], ...] = (
     ),
     (
         lambda text: any(re.search(r"Mode No\.\s*\d+\s*\(freq", line) for line in text.lines),
-        "frequencies that BModes has printed, not its input: give the .bmi file; to compare these frequencies, write them "
-        "to a CSV file for `southwell verify --add`",
+        "frequencies that BModes has printed, not its input: give the .bmi file; to compare these frequencies, add "
+        "--add bmodes=FILE.out to `southwell verify`",
     ),
     (
         lambda text: "ntwinpst" in keys(text),

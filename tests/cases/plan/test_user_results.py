@@ -24,6 +24,8 @@ from southwell.cases.plan.subject import speeds_of_blades
 from southwell.cases.verify import matrix
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
+from southwell.references.protocol import registry
+from southwell.references.protocol.interface import BladeAdapter
 from southwell.reports.cli import app as cli
 
 HEAD = "speed [rad/s], frequency [rad/s], mode\n"
@@ -116,6 +118,37 @@ def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> No
 
 
 @pytest.mark.slow
+def test_a_speed_between_those_of_the_case_is_solved_too(tmp_path: Path) -> None:
+    """At 7 rad/s, by the closed form of the exact beam; a value 1 % larger is a failure."""
+    code, blade = registry.code("exact-beam"), library.load("park-cantilever").variants[0].blade
+    assert isinstance(code, BladeAdapter)
+    exact = float(code.solve(blade, 7.0, code.levels[-1], 2).frequencies[0])
+    one, two = of(run(read(tmp_path, HEAD + f"7, {exact:.7f}, 1\n10, {EXACT['edgewise 1']:.6f}, edgewise 1")))
+    assert (one.omega, one.verdict) == (7.0, "pass")
+    assert (two.omega, two.verdict) == (10.0, "pass")
+    (wrong,) = of(run(read(tmp_path, HEAD + f"7, {1.01 * exact:.7f}, 1")))
+    assert wrong.verdict == "fail"
+
+
+def test_the_output_of_bmodes_is_read_with_the_speed_of_its_input(tmp_path: Path) -> None:
+    """As BModes 3.00 prints it; 0.6711E+00 Hz is known to half a unit of its last digit."""
+    path = tmp_path / "blade.out"
+    path.write_text(
+        "BModes v3.00\n rotating blade frequencies\n -------- Mode No.   1  (freq =   0.6711E+00 Hz)\n 0.0 0.0\n"
+        " -------- Mode No.   2  (freq =   0.1087E+01 Hz)\n"
+    )
+    with pytest.raises(CaseError, match=r"blade\.bmi is not beside it"):
+        user_results.read("bmodes", path)
+    (tmp_path / "blade.bmi").write_text("1 beam_type\n12.1   rot_rpm: rotor speed\n")
+    one, two = user_results.read("bmodes", path).rows
+    assert (one.mode, two.mode, one.family) == (1, 2, "")
+    assert one.omega == pytest.approx(12.1 * math.pi / 30)
+    assert one.value.value == pytest.approx(2 * math.pi * 0.6711)
+    assert one.value.uncertainty == pytest.approx(0.5e-4 / 0.6711)
+    assert two.value.uncertainty == pytest.approx(0.5e-3 / 1.087)
+
+
+@pytest.mark.slow
 def test_what_is_added_declares_no_origin_and_is_in_no_group(tmp_path: Path) -> None:
     one = run(read(tmp_path, HEAD + "10, 11.710953, edgewise 1"))
     (rig,) = (w for w in witnesses(one, "park-cantilever") if w.name == "rig")
@@ -177,8 +210,8 @@ def test_not_text_and_not_there(tmp_path: Path) -> None:
     [
         (
             "park-cantilever",
-            HEAD + "12, 11.7, edgewise 1\n",
-            "line 2: speed: 12 rad/s is not among the speeds of park-c",
+            HEAD + "31, 11.7, edgewise 1\n",
+            "line 2: speed: 31 rad/s is above the highest speed of park-c",
         ),
         ("park-blade", HEAD + "0, 5.8, flapwise 1\n", "line 2: blade: not given, and the run has 3: add a column"),
         (
@@ -251,7 +284,9 @@ def test_a_family_is_a_convention_only_where_core_has_mixed_modes(
     head = Head("blade", "rig", "from results.csv", "code", 1e-3, "nothing")
     rows = read(tmp_path, HEAD + "1.0000, 5.35500, flapwise 1\n1.0000, 5.35500, 2").rows
     rows = [*rows, *read(tmp_path, HEAD + "1.0000, 6.50000, flapwise 1").rows]
-    (named, numbered, wrong), _ = user_columns._rows(head, rows, core)
+    (named, numbered, wrong), _ = user_columns._rows(
+        head, library.load("park-cantilever").variants[0].blade, park().text.compare, rows, core
+    )
     assert [c.verdict for c in (named, wrong, numbered)] == [verdict, "fail", "pass"]
     if verdict == "inconclusive":
         assert "not that of flapwise 1 but of mixed 2" in named.reason
