@@ -31,6 +31,8 @@ BALANCED = 1e-10
 MAX_STEPS = 30
 """Largest number of Newton's steps."""
 
+_STILL = 1e-13  # amplitude, rad or fractions of the mechanism's length, that is rounding
+
 MAX_UNKNOWNS = 6000
 """Largest number of coordinates times azimuths."""
 
@@ -209,7 +211,10 @@ def _balanced(orbit: Orbit) -> Orbit:
         q[:, free] += step * min(1.0, 0.5 / max(length, 0.5))
         orbit = replace(orbit, q=q)
         if length < 1e-13 or (length < 1e-9 and length > 0.5 * previous):
-            return orbit
+            mean = orbit.q.mean(0)
+            still = np.abs(orbit.q - mean).max(0) <= _STILL * coordinate_units(orbit.tree, orbit.tree.length)
+            still &= orbit.ratios == 0.0
+            return replace(orbit, q=np.where(still, mean, orbit.q))
         previous = length
     raise MechanismError(
         f"no periodic steady state was found near that at ψ = 0: the last step is {previous:.1e} of the mechanism's length "

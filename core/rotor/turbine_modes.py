@@ -1,0 +1,213 @@
+"""Modes of a turbine at a speed, named by where their elastic energy is.
+
+The elastic motions of tower and blades are orthogonal in stiffness, so the energy of a mode is a sum over them, the shaft and
+the yaw bearing. The motion with the largest part names the mode, and that part is the confidence. For blades, the parts of
+collective, cosine and sine motion are added, and the whirl follows from the phase of sine against cosine.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from .. import participation
+from ..modes import Modes
+from ..spectrum import eigen
+from ..threads import one_thread
+from ..tree.links import twists
+from ..tree.mode_shapes import mode_shapes
+from . import multiblade
+from .turbine import Assembled, Machine, assemble
+from .whirl import whirl
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+CONFIDENT = 0.5
+"""Smallest part of the elastic energy that names a mode without a question mark."""
+
+RIGID = 1e-6
+"""Frequency, relative to the lowest of the blade, below which a mode is the rotor that turns freely."""
+
+TOWER_NAMES = ("fore-aft", "side-side", "torsion", "axial")
+"""Names of the tower's motions in the order of ``participation.FAMILIES``."""
+
+BLADE_NAMES = ("flap", "edge", "torsion", "axial")
+
+TURNS = "rotor turns freely"
+SHAFT = "drivetrain torsion"
+
+
+@dataclass(frozen=True)
+class TurbineModes:
+    """The lowest modes of a turbine at a speed.
+
+    Attributes:
+        omega: rad/s.
+        frequencies: (m,) rad/s, ascending, in the ground's frame; the free rotation of the rotor is left out.
+        growth: (m,) real parts, 1/s: rounding, unless gyroscopic forces destabilise the machine.
+        names: (m,) as ``1st flap forward whirl``.
+        confidence: (m,) part of the elastic energy in the motion that names each mode.
+        energies: (m, g) parts of the groups ``groups``; each row adds up to 1.
+        groups: (g,) names of the motions.
+        shapes: (m, k) displacements of tower, shaft and blades by multi-blade coordinate, for tracking; the largest is 1.
+        directions: (m,) whirl of the blades' motion, from −1, backward, to 1, forward.
+    """
+
+    omega: float
+    frequencies: Array
+    growth: Array
+    names: tuple[str, ...]
+    confidence: Array
+    energies: Array
+    groups: tuple[str, ...]
+    shapes: Complex
+    directions: Array
+
+
+def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
+    """The ``count`` lowest modes of a turbine at a speed, rad/s.
+
+    Raises:
+        PeriodicError: the equations vary with the azimuth.
+        SteadyStateError: the blades have no steady state.
+        EigenError: the eigenvalue solver fails.
+    """
+    a = assemble(made, omega)
+    free = made.turbine.drivetrain.free
+    rigid = np.zeros((len(a.M), 0))
+    if free:  # hub and generator turn together
+        rigid = np.zeros((len(a.M), 1))
+        rigid[list(a.shaft)] = 1.0
+    with one_thread():
+        found = eigen.damped(a.M, a.C, a.K, None, (rigid, rigid) if free else None)
+    keep = np.flatnonzero(np.abs(found.values) > RIGID * a.blade.frequencies[0])[:count]
+    values, vectors = found.values[keep], found.vectors[:, keep]
+    labels, numbers = _labels(made, a)
+    energies = _energies(made, a, vectors, numbers, len(labels))
+    names, directions = [], np.zeros(len(values))
+    for k, x in enumerate(vectors.T):
+        group = int(energies[k].argmax())
+        label = labels[group]
+        motions = np.flatnonzero(numbers["blade"] == group)
+        if len(motions):
+            label, directions[k] = _turned(a, label, x, motions)
+        names.append(label)
+    return TurbineModes(
+        omega=omega,
+        frequencies=np.abs(values),
+        growth=values.real,
+        names=tuple(names),
+        confidence=energies.max(1),
+        energies=energies,
+        groups=labels,
+        shapes=_shapes(a, vectors),
+        directions=directions,
+    )
+
+
+def _turned(a: Assembled, label: str, x: Complex, motions: NDArray[np.intp]) -> tuple[str, float]:
+    """A blade's label with the motion around the rotor, and its direction."""
+    names = multiblade.names(len(a.blades))
+    energy = a.blade.frequencies[motions] ** 2
+    parts = np.array([float(energy @ np.abs(x[row[motions]]) ** 2) for row in a.blades])
+    if parts[0] >= 0.5 * parts.sum():
+        return f"{label} collective", 0.0
+    if names[-1] == "differential" and parts[-1] >= 0.5 * parts.sum():
+        return f"{label} differential", 0.0
+    pairs = np.stack([a.blades[1, motions], a.blades[2, motions]], axis=-1)
+    turning = whirl(x, pairs, a.omega, energy)
+    if a.omega and turning.name != "neither":
+        return f"{label} {turning.name} whirl", turning.direction
+    return f"{label} {'tilt' if parts[1] >= parts[2] else 'yaw'}", turning.direction
+
+
+def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDArray[np.intp]]]:
+    """Names of the groups, and the group of each elastic motion of ``tower`` and ``blade``."""
+    out: list[str] = ["yaw", SHAFT]
+    numbers: dict[str, NDArray[np.intp]] = {}
+    parts = (
+        ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], TOWER_NAMES),
+        ("blade", made.turbine.blade, a.blade, a.meshes[1], a.shapes[1], BLADE_NAMES),
+    )
+    for part, beam, reduced, mesh, shape, words in parts:
+        p = a.tower_links if part == "tower" else a.blade_links
+        nodes = twists(p, reduced.vectors)
+        both = np.stack([nodes, np.zeros_like(nodes)], axis=1).reshape(-1, *nodes.shape[1:])
+        modes = Modes(0.0, reduced.frequencies, mode_shapes(mesh, shape, both), mesh.elements)
+        fractions = participation.participation(modes, beam)
+        families = [words[int(row.argmax())] for row in fractions]
+        seen: dict[str, int] = {}
+        group = []
+        for family in families:
+            seen[family] = seen.get(family, 0) + 1
+            prefix = "tower " if part == "tower" else ""
+            out.append(f"{ordinal(seen[family])} {prefix}{family}")
+            group.append(len(out) - 1)
+        numbers[part] = np.array(group, dtype=np.intp)
+    return tuple(out), numbers
+
+
+def ordinal(number: int) -> str:
+    """``1st``, ``2nd``, ``3rd``, ``4th`` …"""
+    suffix = "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{suffix}"
+
+
+def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, NDArray[np.intp]], count: int) -> Array:
+    """(m, g) parts of the elastic energy in each group."""
+    t = a.tower.size
+    out = np.zeros((vectors.shape[1], count))
+    squared = np.abs(vectors) ** 2
+    tower = a.tower.frequencies[:, None] ** 2 * squared[:t]
+    total = tower.sum(0)
+    yawing = np.minimum(made.yaw_energy(vectors[:t]), total)
+    np.add.at(out.T, numbers["tower"], tower * (1.0 - yawing / np.where(total > 0, total, 1.0)))
+    out[:, 0] = yawing
+    if a.shaft and np.isfinite(made.turbine.drivetrain.stiffness):
+        turned = vectors[a.shaft[0]] - (vectors[a.shaft[1]] if len(a.shaft) > 1 else 0.0)
+        out[:, 1] = made.turbine.drivetrain.stiffness * np.abs(turned) ** 2
+    for index, row in enumerate(a.blades):
+        weight = _weight(index, len(a.blades))
+        np.add.at(out.T, numbers["blade"], weight * a.blade.frequencies[:, None] ** 2 * squared[row])
+    total = out.sum(1, keepdims=True)
+    return out / np.where(total > 0, total, 1.0)
+
+
+def _weight(index: int, blades: int) -> float:
+    """Sum over the blades of the square of a multi-blade coordinate's factor."""
+    return float((multiblade.transformation(0.0, blades)[:, index] ** 2).sum())
+
+
+def _shapes(a: Assembled, vectors: Complex) -> Complex:
+    """(m, k) displacements at the nodes, by which modes are compared from speed to speed."""
+    t = a.tower.size
+    tower = twists(a.tower_links, a.tower.vectors)[..., :3].reshape(t, -1)
+    blade = twists(a.blade_links, a.blade.vectors)[..., :3].reshape(a.blade.size, -1)
+    parts: list[Complex] = [vectors[:t].T @ tower]
+    length = a.meshes[1].scale
+    parts += [length * vectors[[k]].T for k in a.shaft]
+    parts += [vectors[row].T @ blade for row in a.blades]
+    out: Complex = np.concatenate(parts, axis=1)
+    return out / np.abs(out).max(axis=1, keepdims=True)
+
+
+def tracked(at: Sequence[TurbineModes]) -> list[NDArray[np.intp]]:
+    """For each speed the (m,) indices of its modes, in the order of the modes at the first speed; see ``linked``."""
+    order = [np.arange(len(at[0].frequencies))]
+    for before, after in pairwise(at):
+        order.append(linked(before, after)[order[-1]])
+    return order
+
+
+def linked(before: TurbineModes, after: TurbineModes) -> NDArray[np.intp]:
+    """(m,) the mode of ``after`` that continues each mode of ``before``: the pairs with the largest sum of MACs."""
+    x, y = before.shapes, after.shapes
+    mac = np.abs(x.conj() @ y.T) ** 2 / np.outer((np.abs(x) ** 2).sum(1), (np.abs(y) ** 2).sum(1))
+    rows, columns = linear_sum_assignment(-mac)
+    out = np.empty(len(x), dtype=np.intp)
+    out[rows] = columns
+    return out

@@ -1,0 +1,166 @@
+"""A turbine against the same machine as a general mechanism, closed forms, and the plain solver of a beam."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.optimize import brentq
+
+from southwell.core import solve
+from southwell.core.blade import uniform_blade
+from southwell.core.rotor import turbine as tb
+from southwell.core.rotor.multiblade import blades_of, second_order
+from southwell.core.rotor.orbit import orbit_of
+from southwell.core.rotor.turbine import Drivetrain, Resolution, assemble, machine
+from southwell.core.rotor.turbine_modes import linked, ordinal, turbine_modes
+from southwell.core.spectrum import eigen
+from southwell.tests.support.turbines import SMALL, as_mechanism, rigid_nacelle_and_rotor, small
+
+OMEGA = 4.0
+
+ONE = Resolution(tower_elements=1, blade_elements=1, tower_modes=6, blade_modes=7)
+"""One element each."""
+
+
+def general(turbine: tb.Turbine, omega: float, psi: float = 0.3) -> np.ndarray:
+    """Frequencies of the mechanism: the angle of the blades' coordinates is taken out by multi-blade coordinates."""
+
+    orbit = orbit_of(as_mechanism(turbine, ONE, omega), "spin.rz")
+    names = [orbit.tree.coordinates[j] for j in orbit.free]
+    inner = 6 * ONE.blade_elements
+    own = {letter: [k for k, name in enumerate(names) if name.startswith(f"{letter}e")] for letter in "pqr"}
+    first = [k for k, name in enumerate(names) if name.startswith("beam")]
+    order = first[6 * ONE.tower_elements :]  # internal coordinates: the tower's, then those of blade after blade
+    for k, letter in enumerate("pqr"):
+        own[letter] += order[k * inner : (k + 1) * inner]
+    groups = list(zip(*own.values(), strict=True))
+    M, C, K = second_order(*orbit.matrices(psi), np.array(psi), omega, blades_of(len(names), groups))
+    other = second_order(*orbit.matrices(1.1), np.array(1.1), omega, blades_of(len(names), groups))
+    for a, b in zip((M, C, K), other, strict=True):
+        np.testing.assert_allclose(a, b, atol=1e-9 * np.abs(a).max())
+    return eigen.damped(M, C, K, 10).frequencies
+
+
+@pytest.mark.parametrize(
+    ("yaw", "drivetrain"), [(np.inf, Drivetrain()), (4e5, Drivetrain(2e6))], ids=["rigid", "yaw and shaft"]
+)
+def test_a_turbine_is_the_same_as_a_general_mechanism(yaw: float, drivetrain: Drivetrain) -> None:
+    turbine = small(yaw, drivetrain)
+    exact = general(turbine, OMEGA)  # not reduced
+    np.testing.assert_allclose(turbine_modes(machine(turbine, ONE), OMEGA, 10).frequencies, exact, rtol=1e-6)
+
+
+def test_more_modes_change_little() -> None:
+    turbine = small(4e5, Drivetrain(2e6, 0.3, 20.0, True))
+    few = turbine_modes(machine(turbine, replace(SMALL, blade_modes=8)), OMEGA, 10).frequencies
+    many = turbine_modes(machine(turbine, replace(SMALL, blade_modes=12)), OMEGA, 10).frequencies
+    np.testing.assert_allclose(few, many, rtol=1e-6)
+
+
+def test_equations_are_those_of_a_conservative_machine() -> None:
+    a = assemble(machine(small(4e5, Drivetrain(2e6, 0.3, 20.0, True)), SMALL), OMEGA)
+    for part, sign in ((a.M, 1.0), (a.C, -1.0), (a.K, 1.0)):
+        np.testing.assert_allclose(part, sign * part.T, atol=1e-9 * np.abs(part).max())
+    turning = np.zeros(len(a.M))
+    turning[list(a.shaft)] = 1.0
+    assert np.abs(a.K @ turning).max() < 1e-6 * np.abs(a.K).max()
+
+
+def test_four_blades_have_a_differential_motion() -> None:
+    names = turbine_modes(machine(small(blades=4), SMALL), OMEGA, 14).names
+    assert any(name.endswith("differential") for name in names)
+
+
+def test_fewer_than_three_blades_are_refused() -> None:
+    with pytest.raises(ValueError, match="at least three"):
+        machine(small(blades=2), SMALL)
+
+
+def test_names_and_tracking() -> None:
+    made = machine(small(), SMALL)
+    slow, fast = turbine_modes(made, OMEGA, 8), turbine_modes(made, 1.02 * OMEGA, 8)
+    assert {"1st tower fore-aft", "1st tower side-side", "1st flap collective"} <= set(slow.names)
+    assert {"1st flap backward whirl", "1st flap forward whirl"} <= set(slow.names)
+    order = linked(slow, fast)
+    assert [fast.names[k] for k in order] == list(slow.names)
+    np.testing.assert_allclose(slow.energies.sum(1), 1.0)
+    assert [ordinal(k) for k in (1, 2, 3, 4, 11, 12, 21)] == ["1st", "2nd", "3rd", "4th", "11th", "12th", "21st"]
+
+
+def test_whirl_of_a_reversed_rotor_has_the_same_frequencies() -> None:
+    made = machine(replace(small(), blade=replace(small().blade, pitch=0.0)), SMALL)
+    there, back = turbine_modes(made, OMEGA, 8), turbine_modes(made, -OMEGA, 8)
+    flap = {n: f for n, f in zip(there.names, there.frequencies, strict=True) if "1st flap" in n}
+    again = {n: f for n, f in zip(back.names, back.frequencies, strict=True) if "1st flap" in n}
+    assert flap.keys() == again.keys()
+    for name, value in flap.items():
+        assert value == pytest.approx(again[name], rel=2e-3)
+
+
+def test_stiff_blades_leave_the_tower_with_a_rigid_rotor() -> None:
+    """At rest, as the plain solver's beam with a tip mass, under gravity."""
+    turbine = replace(small(), gravity=9.81)
+    stiff = replace(turbine, blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness))
+    made = machine(stiff, replace(SMALL, tower_elements=6))
+    rotor = tb.rigid_rotor(stiff, made.blade_mesh)
+    tower = replace(turbine.tower, tip_mass=rigid_nacelle_and_rotor(stiff, rotor))
+    exact = solve.modes(tower, 0.0, elements=6, count=4, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
+    np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=3e-6)
+
+
+def test_tower_with_a_tip_body() -> None:
+    """1 + c ch + μβ (c sh − s ch) … for a point mass: W. Weaver, S. Timoshenko, D. Young, *Vibration Problems*, 1990."""
+    mass, EI, length, tip = 100.0, 3e7, 20.0, 800.0
+    tower = uniform_blade("tower", length, 0.0, EA=np.inf, GJ=np.inf, EI_y=EI, EI_z=EI, mass=mass)
+    tower = replace(tower, tip_mass=np.diag([tip] * 3 + [0.0] * 3))
+
+    def equation(b: float) -> float:
+        c, s, ch, sh = np.cos(b), np.sin(b), np.cosh(b), np.sinh(b)
+        return 1.0 + c * ch + tip / (mass * length) * b * (c * sh - s * ch)
+
+    exact = (brentq(equation, 0.5, 1.8) / length) ** 2 * np.sqrt(EI / mass)
+    found = solve.modes(tower, 0.0, count=2, accuracy=1e-7).frequencies
+    np.testing.assert_allclose(found, exact, rtol=1e-6)
+
+
+def test_tower_under_the_weight_of_its_tip() -> None:
+    """A massless column with a tip mass under gravity: ω² = P λ/((tan λL − λL) m), λ² = P/EI."""
+    EI, length, tip, g = 3e7, 20.0, 8000.0, 9.81
+    tower = uniform_blade("tower", length, 0.0, EA=np.inf, GJ=np.inf, EI_y=EI, EI_z=EI, mass=1e-6 * tip)
+    tower = replace(tower, tip_mass=np.diag([tip] * 3 + [0.0] * 3))
+    P = tip * g
+    wave = np.sqrt(P / EI)
+    exact = np.sqrt(P * wave / (np.tan(wave * length) - wave * length) / tip)
+    found = solve.modes(tower, 0.0, count=2, gravity=np.array([-g, 0.0, 0.0])).frequencies
+    np.testing.assert_allclose(found, exact, rtol=2e-5)
+
+
+def test_default_resolution_is_converged() -> None:
+    made = machine(small(), Resolution())
+    finer = machine(small(), Resolution(24, 48, 10, 16))
+    a, b = turbine_modes(made, OMEGA, 10).frequencies, turbine_modes(finer, OMEGA, 10).frequencies
+    np.testing.assert_allclose(a, b, rtol=1e-5)
+
+
+def test_an_upwind_rotor_tilts_upwards() -> None:
+    """NREL 5 MW: the hub is 2.4 m above the tower's top and 5 m upwind; the rotor's axis points downwind and down."""
+    pose = tb.shaft_pose(1.96256, -5.0191, np.radians(-5.0))
+    np.testing.assert_allclose(pose[:3, 3], [2.4, 0.0, -5.0], atol=1e-4)
+    assert pose[0, 2] < 0 < pose[2, 2]
+    assert np.linalg.det(pose[:3, :3]) == pytest.approx(1.0)
+
+
+def test_torsion_of_a_shaft_between_rotor_and_generator() -> None:
+    """ω² = k (1/I + 1/(n² J)) of two bodies on a shaft; J counts with the square of the gear ratio n."""
+    k, J, ratio = 2e4, 0.3, 20.0
+    turbine = small(drivetrain=Drivetrain(k, J, ratio, True))
+    stiff = replace(
+        turbine,
+        blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness),
+        tower=replace(turbine.tower, stiffness=1e6 * turbine.tower.stiffness),
+    )
+    made = machine(stiff, SMALL)
+    inertia = tb.rigid_rotor(stiff, made.blade_mesh)[5, 5]
+    found = turbine_modes(made, 0.0, 1)
+    assert found.names == ("drivetrain torsion",)
+    assert found.frequencies[0] == pytest.approx(np.sqrt(k * (1 / inertia + 1 / (ratio**2 * J))), rel=1e-4)
