@@ -287,8 +287,9 @@ def body_fault(matrix: Array, unit: str) -> str | None:
     rounding = INERTIA_TOLERANCE * np.trace(J)
     if (smallest := np.linalg.eigvalsh(J)[0]) < -rounding:
         return (
-            f"smallest principal moment of inertia is {smallest:.3g}: the products of inertia are too large for the moments; "
-            "check both"
+            f"smallest principal moment of inertia is {smallest:.3g}: the products of inertia are too large for the moments "
+            f"{J[0, 0]:.3g}, {J[1, 1]:.3g}, {J[2, 2]:.3g}; correct them, or set all moments and products to zero to leave out "
+            "rotary inertia"
         )
     if least < -rounding:
         return (

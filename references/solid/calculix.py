@@ -136,36 +136,6 @@ def finite_elements(bricks: Bricks, material: Material, name: str = "calculix") 
     return model(stiffness, dict(enumerate(nodes, 1)), mass, name)
 
 
-def section_weights(bricks: Bricks, layer: int) -> Array:
-    """(k, k) ∫NᵀN over a layer of faces, with the shape functions N of 8-node faces; nodes as in ``numbered``.
-
-    Args:
-        bricks: the block.
-        layer: index of the layer of corners along the span, 0 at the root.
-    """
-    places = numbered(bricks)[0]
-    here = places[2 * layer]
-    k = np.unique(here)[1:]
-    index = np.searchsorted(k, here)
-    t, w = np.polynomial.legendre.leggauss(3)
-    xi, eta = (v.ravel() for v in np.meshgrid(t, t, indexing="ij"))
-    at = FACE - 1
-    corner = (1 + at[:, :1] * xi) * (1 + at[:, 1:] * eta) * (at[:, :1] * xi + at[:, 1:] * eta - 1) / 4
-    edge = np.where(at[:, :1] == 0, (1 - xi**2) * (1 + at[:, 1:] * eta), (1 + at[:, :1] * xi) * (1 - eta**2)) / 2
-    N = np.where((at != 0).all(axis=1)[:, None], corner, edge)
-    out = np.zeros((len(k), len(k)))
-    for y, z in np.ndindex(*bricks.counts[1:]):
-        a, b, c, d = (bricks.corners[layer, y + i, z + j, 1:] for i, j in FACE[:4] // 2)
-        along_xi, along_eta = (
-            (np.outer(1 - q, first) + np.outer(1 + q, second)) / 4
-            for q, first, second in ((eta, b - a, c - d), (xi, d - a, c - b))
-        )
-        area = np.outer(w, w).ravel() * np.abs(along_xi[:, 0] * along_eta[:, 1] - along_xi[:, 1] * along_eta[:, 0])
-        own = index[tuple((np.array([2 * y, 2 * z]) + FACE).T)]
-        out[np.ix_(own, own)] += (N * area) @ N.T
-    return out
-
-
 def numbered(bricks: Bricks) -> tuple[Index, Array]:
     """Index of the node at each lattice point, −1 where 20-node elements have none, and the nodes (n, 3), m."""
     lattice = bricks.lattice()

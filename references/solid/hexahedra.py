@@ -12,7 +12,6 @@ R. L. Taylor and J. M. Too, Int. J. Numer. Meth. Engng 3 (1971) 275). No motion 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from importlib import metadata
-from itertools import pairwise
 from typing import Any
 
 import numpy as np
@@ -215,16 +214,6 @@ def finite_elements(bricks: Bricks, material: Material, name: str = "solid") -> 
     """A block as a model for condensation."""
     s = solid(bricks, material)
     return FiniteElements(name, *freedoms(s), tangent(s), lumped(s))
-
-
-def lumped_by_part(bricks: Bricks, material: Material, cuts: NDArray[np.intp]) -> Array:
-    """(m, 3n) lumped mass of each part of a block, cut at layers of corners ``cuts`` (m+1,) along the span."""
-    shape = bricks.lattice().shape[:3]
-    out = np.zeros((len(cuts) - 1, 3, *shape))
-    for k, (a, b) in enumerate(pairwise(cuts)):
-        part = bricks.part(a, b)
-        out[k, :, 2 * a : 2 * b + 1] = lumped(solid(part, material)).reshape(3, *part.lattice().shape[:3])
-    return out.reshape(len(cuts) - 1, -1)
 
 
 def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:

@@ -110,18 +110,6 @@ def clamped(at: float) -> Clamp:
     return fixed
 
 
-def clamped_free_to_contract(at: float) -> Clamp:
-    """Clamp the section at ``x = at`` (m) without restraining its width: fixed along x; y and z fixed on the centre lines.
-
-    A full clamp restrains the Poisson contraction due to bending, which a beam's clamp does not.
-    """
-
-    def fixed(nodes: Array) -> Bools:
-        return _near(nodes[:, :1], at) & np.column_stack([np.ones(len(nodes), bool), _near(nodes[:, 1:], 0.0)])
-
-    return fixed
-
-
 def fixed_by(clamp: Clamp, nodes: Array) -> Bools:
     """(n, 3) which displacements a clamp fixes.
 

@@ -12,6 +12,7 @@ from southwell.core.space import spatial as sp
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
 from southwell.references.solid.mesh import Bricks, blade
+from southwell.tests.support.solid_sections import lumped_by_part
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -73,7 +74,7 @@ def segments_in_place(model: ties.FiniteElements, bricks: Bricks, segments: int 
     frames = [at(x) for x in bricks.corners[layers, 0, 0, 0]]
     root = ties.section(model, frames[0], "root", "rigid")
     tied = [root, *(ties.section(model, f, f"{f[0, 3]:g} m") for f in frames[1:])]
-    return condensation.segments_in_place(model, tied, hexahedra.lumped_by_part(bricks, STEEL, layers))
+    return condensation.segments_in_place(model, tied, lumped_by_part(bricks, STEEL, layers))
 
 
 def segments_apart(kind: ties.Kind, bricks: Bricks, segments: int = SEGMENTS) -> list[Segment]:
@@ -110,5 +111,5 @@ def torsion(length: float, kind: ties.Kind | None) -> float:
         piece = condensation.segment(model, *tied)
     else:
         bounds = np.array([0, margin, margin + layers, 2 * margin + layers])
-        piece = condensation.segments_in_place(model, tied, hexahedra.lumped_by_part(bricks, SQUARE, bounds))[1]
+        piece = condensation.segments_in_place(model, tied, lumped_by_part(bricks, SQUARE, bounds))[1]
     return float(length / np.linalg.inv(piece.stiffness)[3, 3] / st_venant())

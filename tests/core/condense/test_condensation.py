@@ -19,6 +19,7 @@ from southwell.core.spectrum import modal
 from southwell.core.tree.as_mechanism import mechanism
 from southwell.references.solid import hexahedra
 from southwell.tests.support.solid_blades import CHORD, THICK, cantilever_segment, st_venant, torsion
+from southwell.tests.support.solid_sections import lumped_by_part
 from southwell.tests.support.solids import (
     HUB,
     ROOT,
@@ -169,7 +170,7 @@ def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float
     model = twisted_model()
     on = [np.flatnonzero(np.abs(model.points[:, 0] - v) < 1e-9) for v in x]
     ties_ = [(ties.average if k else ties.rigid)(model, on[k], f, f"{k}") for k, f in enumerate(frames)]
-    masses = hexahedra.lumped_by_part(twisted(), STEEL, cuts())
+    masses = lumped_by_part(twisted(), STEEL, cuts())
     found = chain_modes(mesh_from_segments(in_place(model, ties_, masses), at(ROOT)), omega, 5).frequencies
     parallel = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 5).frequencies
     np.testing.assert_allclose(found, parallel, rtol=within)

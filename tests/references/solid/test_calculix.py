@@ -12,7 +12,8 @@ from southwell.core.effects import Effects
 from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import calculix, hexahedra
-from southwell.references.solid.mesh import blade, clamped, clamped_free_to_contract
+from southwell.references.solid.mesh import blade, clamped
+from southwell.tests.support.solid_sections import clamped_free_to_contract, section_weights
 from southwell.tests.support.solids import (
     HUB,
     LENGTH,
@@ -78,7 +79,7 @@ def test_segment_from_calculixs_matrices() -> None:
     length = LENGTH / 20
     bricks = square_bar(length, 4)
     model = calculix.finite_elements(bricks, SQUARE)
-    weights = [calculix.section_weights(bricks, layer) for layer in (0, 4)]
+    weights = [section_weights(bricks, layer) for layer in (0, 4)]
     piece = segment(model, *(tie(model, x, w) for x, w in zip((0.0, length), weights, strict=True)))
     EA, EI = SQUARE.young * SIDE**2, SQUARE.young * SIDE**4 / 12
     f = np.linalg.inv(piece.stiffness)
@@ -96,7 +97,7 @@ def test_section_weights_integrate_a_tapered_twisted_section(layer: int) -> None
     bricks = blade(x, chord, thick, twist, across=(2, 3))
     places, nodes = calculix.numbered(bricks)
     at_layer = np.unique(places[2 * layer])[1:]
-    W = calculix.section_weights(bricks, layer)
+    W = section_weights(bricks, layer)
     y, z = nodes[at_layer, 1:].T
     c, t = chord[layer], thick[layer]
     along = y * np.cos(twist[layer]) + z * np.sin(twist[layer])
@@ -120,7 +121,7 @@ def test_its_substructure_is_rejected() -> None:
     with calculix.run(lines) as folder:
         model = exported.model(read(folder / "blade.mtx"), {int(k) + 1: nodes[k] for k in ends})
     assert len(model.directions) == 3 * len(ends)
-    tied = [tie(model, x, calculix.section_weights(bricks, layer)) for x, layer in ((0.0, 0), (length, 4))]
+    tied = [tie(model, x, section_weights(bricks, layer)) for x, layer in ((0.0, 0), (length, 4))]
     k = condense(model, tied).stiffness
     if calculix.version() == "2.20":
         assert not model.stiffness[: len(ends) // 2, -len(ends) // 2 :].nnz

@@ -9,7 +9,8 @@ from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
-from southwell.references.solid.mesh import Bricks, blade, clamped, clamped_free_to_contract
+from southwell.references.solid.mesh import Bricks, blade, clamped
+from southwell.tests.support.solid_sections import clamped_free_to_contract
 from southwell.tests.support.solids import (
     HUB,
     LENGTH,
