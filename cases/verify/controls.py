@@ -1,6 +1,6 @@
 """Effect of well-known faults on a blade's frequencies, used to identify the cause of a difference.
 
-Each of ``core_faults.CORE_FAULTS`` is solved in core alone. Whether the matrix run detects such faults is tested in
+Each fault that every run seeds (``faults.table.FAST``) is solved in core alone. Whether the run detects it is tested in
 ``faults``.
 """
 
@@ -9,21 +9,31 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...core.blade import Blade
-from ...core.effects import ALL_EFFECTS
+from ...core.element.discretize import Mass
+from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
+from ..faults import table
+from ..faults.seeding import seeded
 from ..input.schema import Compare, Variant
+from ..solve import core_solver
 from ..solve.changed import Changed, changed
-from ..solve.core_solver import COARSEST
-from .core_faults import CORE_FAULTS, Solve
 
-ELEMENTS = COARSEST
+ELEMENTS = core_solver.COARSEST
 """Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""
 
 SAME_MODE = 5e-2
 """Relative distance within which core's converged answer and this coarser one are the same mode of a family: the error
 of lumped mass is 2 %, and modes of a family are farther apart."""
+
+CONSISTENT: tuple[Mass, Measure] = ("consistent", "corotational")
+
+LUMPED: tuple[Mass, Measure] = ("half_end", "body_fixed")
+"""The paper's discretisation."""
+
+DISCRETISATIONS = {"whole end mass": LUMPED}
+"""Faults of another discretisation than ``CONSISTENT``."""
 
 
 @dataclass(frozen=True)
@@ -39,21 +49,37 @@ def solve(variant: Variant, compare: Compare) -> list[Wrong]:
     """Solve one blade with every fault at every speed."""
     out = []
     for omega in variant.speeds.tolist():
-        known: dict[Solve, Modes | None] = {}
-        for m in CORE_FAULTS:
-            if omega or m.at_rest:
-                if m.right not in known:
-                    known[m.right] = _solved(m.right, variant.blade, omega, compare)
-                right, wrong = known[m.right], _solved(m.wrong, variant.blade, omega, compare)
-                modes = changed(right, wrong, variant.blade, compare) if right and wrong else ()
-                out.append(Wrong(m.name, omega, modes))
+        right = {how: _solved("", variant.blade, omega, compare, how) for how in (CONSISTENT, LUMPED)}
+        for fault in table.FAST:
+            how = DISCRETISATIONS.get(fault, CONSISTENT)
+            faultless, wrong = right[how], _solved(fault, variant.blade, omega, compare, how)
+            modes = changed(faultless, wrong, variant.blade, compare) if faultless and wrong else ()
+            out.append(Wrong(fault, omega, modes))
     return out
 
 
-def _solved(solve: Solve, blade: Blade, omega: float, compare: Compare) -> Modes | None:
+def _solved(fault: str, blade: Blade, omega: float, compare: Compare, how: tuple[Mass, Measure]) -> Modes | None:
     """None without an answer: a faulty model may have no steady state, be singular, or give non-finite numbers."""
     try:
         with np.errstate(invalid="ignore"):
-            return solve(blade, omega, ELEMENTS, 2 * compare.modes + 2, ALL_EFFECTS)
+            return core(fault, blade, omega, ELEMENTS, 2 * compare.modes + 2, how)
     except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
         return None
+
+
+def core(
+    fault: str, blade: Blade, omega: float, elements: int, count: int, how: tuple[Mass, Measure] = CONSISTENT
+) -> Modes | None:
+    """Core's modes with one fault of the table; none with an empty name. None without a stable steady state.
+
+    Args:
+        fault: name in ``faults.table``; empty for core without a fault.
+        blade: the blade.
+        omega: rotor speed, rad/s.
+        elements: number of elements.
+        count: number of modes.
+        how: how mass is lumped, and the frame in which the stiffness is linear.
+    """
+    with seeded(table.BY_NAME[fault].seams if fault else ()):
+        (answer,) = core_solver.answers(blade, [(omega, elements, count)], *how)
+    return answer if isinstance(answer, Modes) else None

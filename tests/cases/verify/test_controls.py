@@ -6,10 +6,12 @@ import numpy as np
 import pytest
 
 from southwell.cases.diagnosis import blade_errors, scaled_terms
+from southwell.cases.faults import table
 from southwell.cases.input import library
-from southwell.cases.verify import controls, core_faults
+from southwell.cases.verify import controls
 from southwell.core.blade import Blade
-from southwell.core.effects import ALL_EFFECTS
+from southwell.core.element.discretize import Mass
+from southwell.core.element.measures import Measure
 from southwell.core.modes import Modes
 from southwell.references.theories import exact_beam
 
@@ -23,8 +25,10 @@ def first(modes: Modes, column: int = Y) -> float:
     return float(family(modes, column)[0])
 
 
-def made(solve: core_faults.Solve, omega: float = OMEGA, blade: Blade | None = None) -> Modes:
-    return solve(blade or park(), omega, 15, 10, ALL_EFFECTS)
+def made(fault: str, omega: float = OMEGA, how: tuple[Mass, Measure] = controls.CONSISTENT) -> Modes:
+    modes = controls.core(fault, park(), omega, 15, 10, how)
+    assert modes is not None
+    return modes
 
 
 def exact(blade: Blade, omega: float = OMEGA) -> Modes:
@@ -33,20 +37,20 @@ def exact(blade: Blade, omega: float = OMEGA) -> Modes:
 
 def test_without_geometric_stiffness_the_rotation_only_softens() -> None:
     """In the plane of rotation ω² = ω₀² − Ω²: 3.36 instead of 11.71; out of it ω₀ stays."""
-    wrong = made(core_faults.no_geometric_stiffness)
+    wrong = made("no geometric stiffness")
     assert first(wrong) == pytest.approx(np.sqrt(AT_REST**2 - OMEGA**2), rel=1e-3)
     assert first(wrong, Z) == pytest.approx(AT_REST, rel=1e-3)
 
 
 def test_softening_reversed_adds_twice_the_square_of_the_speed() -> None:
     """ω² = ω_flap² + Ω² in the plane of rotation, but for stretch and Coriolis; out of it nothing changes."""
-    wrong, right = made(core_faults.softening_reversed), exact(park())
+    wrong, right = made("softening's sign"), exact(park())
     assert first(wrong) == pytest.approx(np.sqrt(first(right, Z) ** 2 + OMEGA**2), rel=3e-4)
     assert first(wrong, Z) == pytest.approx(first(right, Z), rel=5e-5)
 
 
 def test_a_frozen_frame_reads_edgewise_as_flapwise() -> None:
-    wrong, right = made(core_faults.frozen_frame), exact(park())
+    wrong, right = made("frozen frame"), exact(park())
     assert wrong.frequencies[:2] == pytest.approx([first(right, Z)] * 2, rel=5e-5)
     assert wrong.frequencies[0] / first(right) - 1.0 == pytest.approx(0.315, abs=1e-3)
 
@@ -71,7 +75,7 @@ def test_softening_is_that_of_points() -> None:
 
 def test_a_shifted_axis_without_couplings_is_a_stiffer_beam() -> None:
     """EI_z + EA e² with e a quarter of √(EI_z/EA): frequencies times √(1 + 1/16); flapwise as before."""
-    wrong, right = made(core_faults.shifted_axis, 0.0), exact(park(), 0.0)
+    wrong, right = made("axis shifted", 0.0), exact(park(), 0.0)
     stiff = max(wrong.frequencies[:2])
     assert stiff / right.frequencies[0] == pytest.approx(np.sqrt(1 + blade_errors.OFFSET**2), rel=1e-4)
     assert min(wrong.frequencies[:2]) == pytest.approx(right.frequencies[0], rel=1e-4)
@@ -81,15 +85,15 @@ def test_a_whole_end_mass_is_half_an_elements_mass_too_much() -> None:
     blade = park()
     extra = 0.5 * blade.mass[0, 0, 0] * blade.length / 15
     heavier = replace(blade, tip_mass=np.diag([extra] * 3 + [0.0] * 3))
-    ratio = first(made(core_faults.whole_end_mass)) / first(made(core_faults.lumped))
+    ratio = first(made("whole end mass", how=controls.LUMPED)) / first(made("", how=controls.LUMPED))
     assert ratio == pytest.approx(first(exact(heavier)) / first(exact(blade)), abs=2e-3)
     assert ratio < 0.95
 
 
 def test_without_hub_radius_and_coriolis() -> None:
     blade = park()
-    assert first(made(core_faults.no_hub)) == pytest.approx(first(exact(replace(blade, hub_radius=0.0))), rel=1e-6)
-    without = made(core_faults.no_coriolis)
+    assert first(made("no hub radius")) == pytest.approx(first(exact(replace(blade, hub_radius=0.0))), rel=1e-6)
+    without = made("no Coriolis")
     assert 1e-4 < first(without) / first(exact(blade)) - 1.0 < 1.3e-4  # Yoo–Shin coupled and uncoupled: 0.012 %
 
 
@@ -107,4 +111,4 @@ def test_a_blade_that_a_mistake_leaves_singular_has_no_modes_to_tell_of() -> Non
     variant = replace(library.load("park-cantilever").variants[0], blade=lagging, speeds=np.array([OMEGA]))
     wrongs = controls.solve(variant, library.load("park-cantilever").text.compare)
     assert next(w for w in wrongs if w.fault == "no Coriolis").modes
-    assert len(wrongs) == len(core_faults.CORE_FAULTS)
+    assert len(wrongs) == len(table.FAST)
