@@ -24,12 +24,11 @@ from ...cases.input.default_case import default_case
 from ...cases.input.errors import CaseError
 from ...cases.input.writing import writable
 from ...cases.plan import measurements
-from ...cases.plan.blade import blades
+from ...cases.plan.request import Execution, Request
 from ...cases.run.executors import Processes
-from ...cases.verify import matrix
+from ...cases.verify import pipeline
 from ...core.blade import Blade
 from ...core.modes import Modes
-from ...references.protocol import registry
 from ..campbell import changes as changes_table
 from ..campbell import confirmation as confirmation_table
 from ..campbell import page
@@ -39,7 +38,7 @@ from ..campbell.tables import Sheet
 from ..shared import html as as_html
 from ..shared import not_used
 from ..shared import pdf as as_pdf
-from ..shared.console import Watch, output
+from ..shared.console import output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units
 from . import campbell_options as options
@@ -48,6 +47,7 @@ from .errors import UsageError
 from .mounting import Mounting
 from .subjects import Subject, changed, single
 from .subjects import subjects as find_subjects
+from .verify_output import Progressing
 
 
 def command(
@@ -206,12 +206,8 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
         source="; ".join(subject.about),
         modes=diagram.request.modes,
     )
-    pool, watch = Processes(os.cpu_count() or 1), Watch()
-    try:
-        with watch:
-            run = matrix.run(blades(case), registry.names(), pool, watch.show, parts=False)
-    finally:
-        pool.stop()
+    request = Request((case,), faults="none", execution=Execution(workers=os.cpu_count() or 1))
+    run = pipeline.verify(request, Progressing())
     return confirmation_table.sheet(diagram, confirmation.confirmations(diagram, run), units)
 
 

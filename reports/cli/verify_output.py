@@ -19,11 +19,8 @@ from .arguments import CONTINUE
 from .report import show
 
 
-class Output(Observer):
-    """Notes and progress on standard error; the report in the folder ``out``, and JUnit XML in the file ``junit``."""
-
-    def __init__(self, out: Path, junit: Path | None) -> None:
-        self.out, self.junit = out, junit
+class Progressing(Observer):
+    """Notes and progress on standard error."""
 
     def note(self, line: str) -> None:
         """See ``Observer``."""
@@ -34,6 +31,13 @@ class Output(Observer):
         """See ``Observer``."""
         with console.Watch() as watch:
             yield watch.show
+
+
+class Output(Progressing):
+    """Notes and progress; the report in the folder ``out``, and JUnit XML in the file ``junit``."""
+
+    def __init__(self, out: Path, junit: Path | None) -> None:
+        self.out, self.junit = out, junit
 
     def finished(self, run: Run, pool: Executor | None) -> None:
         """See ``Observer``."""
