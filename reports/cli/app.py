@@ -55,6 +55,7 @@ COMMANDS = (
     (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),
     (ONE_BLADE, "study", "cli.study:command", "Solve sampled variants of blades at many speeds."),
     (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
+    (OTHER, "judge", "cli.judge:command", "Judge linearisations of OpenFAST: find their defects and name their modes."),
     (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),
     (CI, "gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
     (CI, "history", "cli.history:app", "Record the results of runs by commit."),

@@ -1,0 +1,1 @@
+"""Linearisations written by other programs: read, transformed to the fixed frame, named and judged."""

@@ -1,0 +1,147 @@
+"""Checks that the azimuths agree in the fixed frame, and the reason if they do not."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .azimuths import EXCHANGE
+from .findings import DEFECT, LIMIT, Finding
+from .floquet import SAME_PHASE, interpolate
+from .modes import Spectrum
+from .multiblade import fixed_frame
+from .sets import AzimuthSet
+
+Array = NDArray[np.float64]
+
+MAX_EFFECT = 2e-3
+"""Largest change of an eigenvalue, relative to it, by the part of an azimuth's matrix that no harmonic explains."""
+
+LARGE_EFFECT = 1e-2
+"""Change above which the azimuths are of different machines or states."""
+
+MIN_DRIFT = 5e-3
+"""Smallest change of an equation by another inertia, relative."""
+
+ROUNDING_FACTOR = 2.0
+"""Multiple of the uncertainty by the digits of one file below which a change is not significant."""
+
+EXPLAINS = 4.0
+"""Factor by which the disagreement falls if its cause is undone."""
+
+
+def unexplained(azimuths: Array, matrices: Array) -> Array:
+    """Parts of the matrices that harmonics of blade passing do not explain (azimuth, row, column)."""
+    fit = interpolate(azimuths, matrices)
+    return matrices - np.array([fit.at(float(psi)) for psi in azimuths])
+
+
+def effects(found: Spectrum, parts: Array) -> Array:
+    """Relative changes of the eigenvalues by each azimuth's part (mode, azimuth), to first order.
+
+    Changes that the rounding of one file may cause are 0.
+    """
+    out = []
+    for mode in found.modes:
+        if mode.structural > 0.5 and np.isfinite(mode.uncertainty):
+            change = np.abs(parts @ mode.shape @ mode.adjoint) / abs(mode.eigenvalue)
+            rounding = mode.relative_uncertainty * np.sqrt(len(parts))
+            out.append(np.where(change > ROUNDING_FACTOR * rounding, change, 0.0))
+    return np.array(out).reshape(-1, len(parts))
+
+
+def agreement(each: AzimuthSet, A: Array, found: Spectrum) -> Iterator[Finding]:
+    """Azimuths that disagree in the fixed frame: blades exchanged, one inertia changed, or the block that differs most."""
+    if len(each.files) < 2 or not found.modes:
+        return
+    parts = unexplained(each.azimuths, found.matrices)
+    effect = effects(found, parts)
+    if not effect.size or effect.max() < MAX_EFFECT:
+        return
+    size = float(np.linalg.norm(parts))
+    if each.blades == 3 and size > EXPLAINS * float(np.linalg.norm(_exchanged(each, A))):
+        yield Finding(
+            "blades exchanged",
+            DEFECT,
+            each.name,
+            f"azimuths change eigenvalues by up to {100 * effect.max():.2g} %; with blades 2 and 3 exchanged "
+            f"{size / max(float(np.linalg.norm(_exchanged(each, A))), 1e-300):.0f} times less",
+            EXCHANGE,
+            float(effect.max()),
+        )
+        return
+    drift = _inertia(each, found.matrices)
+    if drift:
+        label, ratio, names = drift
+        yield Finding(
+            "version drift",
+            DEFECT,
+            each.name,
+            f"in {len(names)} of {len(each.files)} files (first: {names[0]}) the equation of {label} is {ratio:.3f} times "
+            "that of the others, and the other equations follow: its inertia differs",
+            "linearise all azimuths with one model and one version",
+            ratio,
+        )
+        return
+    k = int(effect.max(axis=0).argmax())
+    row, column = np.unravel_index(int(np.abs(parts[k]).argmax()), parts[k].shape)
+    yield Finding(
+        "azimuths disagree",
+        DEFECT if effect.max() > LARGE_EFFECT else LIMIT,
+        each.name,
+        f"{each.files[k].path.name} changes an eigenvalue by {100 * effect.max():.2g} %, most in the equation of "
+        f"{each.states[row].label} by {each.states[column].label}",
+        "linearise this azimuth again, at a steady operating point",
+        float(effect.max()),
+    )
+
+
+def _exchanged(each: AzimuthSet, A: Array) -> Array:
+    """What harmonics do not explain if blades 2 and 3 are exchanged."""
+    k = np.arange(len(each.states))
+    for group in each.groups:
+        _, second, third = group.members
+        k[[second, third]] = third, second
+    swapped = A[:, k][:, :, k]
+    return unexplained(each.azimuths, fixed_frame(each, swapped))
+
+
+def _inertia(each: AzimuthSet, matrices: Array) -> tuple[str, float, list[str]] | None:
+    """A degree of freedom whose inertia differs between azimuths: its label, the ratio of its equation, and the files.
+
+    A change of one diagonal entry of M multiplies the acceleration row of its motion by a factor and adds multiples of that
+    row to all others.
+    """
+    reference = _typical(each.azimuths, matrices)
+    difference = matrices - reference
+    total = float(np.linalg.norm(difference))
+    best: tuple[float, int, Array] | None = None
+    for q, v in each.pairs:
+        row = reference[:, v]
+        size = np.einsum("kj,kj->k", row, row)
+        if each.states[q].blade or not size.all():
+            continue
+        factor = np.einsum("kij,kj->ki", difference, row) / size[:, None]
+        remaining = float(np.linalg.norm(difference - factor[:, :, None] * row[:, None, :]))
+        ratio = 1 + factor[:, v]
+        changed = np.abs(ratio - 1) > MIN_DRIFT
+        if changed.any() and not changed.all() and remaining < total / 2 and (best is None or remaining < best[0]):
+            best = remaining, q, ratio
+    if best is None:
+        return None
+    _, q, ratio = best
+    changed = np.abs(ratio - 1) > MIN_DRIFT
+    worst = float(ratio[np.abs(ratio - 1).argmax()])
+    return each.states[q].label, worst, [f.path.name for f, c in zip(each.files, changed, strict=True) if c]
+
+
+def _typical(azimuths: Array, matrices: Array) -> Array:
+    """For each azimuth the median of the matrices at its phase of blade passing, if there are three, else of all."""
+    distance = np.abs(np.angle(np.exp(3j * (azimuths[:, None] - azimuths))))
+    everything = np.median(matrices, axis=0)
+    return np.array(
+        [
+            np.median(matrices[same], axis=0) if np.count_nonzero(same := near < SAME_PHASE / 2) > 2 else everything
+            for near in distance
+        ]
+    )

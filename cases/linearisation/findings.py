@@ -1,0 +1,36 @@
+"""Findings about linearisations, as data."""
+
+from dataclasses import dataclass
+
+DEFECT, LIMIT, NOTE = "defect", "limit", "note"
+"""A defect makes the verdict No; a limit of the evidence makes it Open; a note does not change it."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """A finding about a set.
+
+    Attributes:
+        name: kind of the finding, as ``frame flag``.
+        level: ``DEFECT``, ``LIMIT`` or ``NOTE``.
+        where: name of the set.
+        what: what was measured, with the number.
+        remedy: what to do.
+        value: the number.
+    """
+
+    name: str
+    level: str
+    where: str
+    what: str
+    remedy: str
+    value: float
+
+    def __str__(self) -> str:
+        return f"{self.name}: {self.what}: {self.remedy}"
+
+
+def listed(items: list[str], most: int = 3) -> str:
+    """The first items, and how many there are more."""
+    more = f" and {len(items) - most} more" if len(items) > most else ""
+    return ", ".join(items[:most]) + more

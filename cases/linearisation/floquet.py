@@ -1,0 +1,113 @@
+"""Floquet exponents from the azimuths of a set, by Fourier interpolation of the state matrix in the fixed frame.
+
+For equal blades the matrix in the fixed frame has the harmonics 0, 3, 6, … of the rotor speed only.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.linalg import expm
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+MAX_HARMONICS = 4
+"""Highest multiple of the blade-passing frequency in the interpolation."""
+
+STEPS = 12
+"""Steps per blade passage and harmonic of the integration."""
+
+SAME_PHASE = np.radians(10.0)
+"""Azimuths whose phases of blade passing differ by less show the same instant of it."""
+
+
+@dataclass(frozen=True)
+class Interpolation:
+    """A(ψ) = Σ C_h cos 3hψ + S_h sin 3hψ.
+
+    Attributes:
+        cosine, sine: coefficients (harmonic, row, column); ``sine[0]`` is zero.
+        harmonics: highest harmonic; 0 if the azimuths show one phase of blade passing only.
+        residual: largest deviation of a matrix from the interpolation, relative to the largest periodic part.
+    """
+
+    cosine: Array
+    sine: Array
+    harmonics: int
+    residual: float
+
+    def at(self, psi: float) -> Array:
+        """A(ψ)."""
+        h = np.arange(len(self.cosine))
+        return np.tensordot(np.cos(3 * h * psi), self.cosine, 1) + np.tensordot(np.sin(3 * h * psi), self.sine, 1)
+
+
+def phases(azimuths: Array) -> int:
+    """Number of different phases of blade passing, 3ψ."""
+    phase = np.sort(np.mod(3 * azimuths, 2 * np.pi))
+    gaps = np.diff(np.append(phase, phase[0] + 2 * np.pi))
+    return max(1, int(np.count_nonzero(gaps > SAME_PHASE)))
+
+
+def interpolate(azimuths: Array, matrices: Array, harmonics: int | None = None) -> Interpolation:
+    """Fit the harmonics of blade passing that the azimuths determine, by least squares."""
+    most = min((phases(azimuths) - 1) // 2, MAX_HARMONICS)
+    count = most if harmonics is None else min(harmonics, most)
+    h = np.arange(1, count + 1)
+    basis = np.column_stack(
+        [np.ones(len(azimuths)), np.cos(3 * np.outer(azimuths, h)), np.sin(3 * np.outer(azimuths, h))]
+    )
+    flat = matrices.reshape(len(azimuths), -1)
+    coefficients = np.linalg.lstsq(basis, flat, rcond=None)[0]
+    shape = (-1, *matrices.shape[1:])
+    residual = float(np.abs(flat - basis @ coefficients).max())
+    periodic = float(np.abs(flat - flat.mean(axis=0)).max(initial=0.0))
+    cosine = coefficients[: count + 1].reshape(shape)
+    sine = np.concatenate([np.zeros_like(cosine[:1]), coefficients[count + 1 :].reshape(shape)])
+    return Interpolation(cosine, sine, count, residual / periodic if periodic > 0 else 0.0)
+
+
+def second_order(matrices: Array, omega: float, values: Complex, adjoints: Complex, shapes: Complex) -> Array:
+    """Estimate of the changes of eigenvalues by the periodic part, rad/s: Σ_j |l_i δA r_j| |l_j δA r_i| / |λ_i − λ_j + 3inΩ|.
+
+    Args:
+        matrices: in the fixed frame (azimuth, row, column).
+        omega: rotor speed, rad/s.
+        values: eigenvalues of the mean matrix.
+        adjoints: left eigenvectors by row, of unit product with the right ones.
+        shapes: right eigenvectors by column.
+    """
+    every = np.concatenate([values, values.conj()])
+    left, right = np.vstack([adjoints, adjoints.conj()]), np.hstack([shapes, shapes.conj()])
+    coupling = np.max([np.abs(left @ part @ right) for part in matrices - matrices.mean(axis=0)], axis=0)
+    between = every[:, None] - every
+    gap = np.min([np.abs(between + 3j * n * omega) for n in (-1, 1)], axis=0)
+    size = (coupling * coupling.T / np.maximum(gap, 1e-12)).sum(axis=1)
+    return size[: len(values)]
+
+
+def exponents(fit: Interpolation, omega: float, near: Complex) -> Complex:
+    """Floquet exponents next to the eigenvalues ``near`` of the mean matrix, rad/s.
+
+    The monodromy matrix of one blade passage is a product of exponentials of A at midpoints (Magnus, second order), of which
+    each exponent is known up to multiples of 3Ωi. Exponents that overflow leave all eigenvalues as they are.
+    """
+    steps = STEPS * max(fit.harmonics, 1)
+    period = 2 * np.pi / (3 * abs(omega))
+    step = period / steps
+    Phi = np.eye(fit.cosine.shape[1])
+    with np.errstate(over="ignore", invalid="ignore"):
+        for k in range(steps):
+            psi = np.sign(omega) * (k + 0.5) * 2 * np.pi / 3 / steps
+            Phi = expm(fit.at(float(psi)) * step) @ Phi
+    if not np.isfinite(Phi).all():
+        return near
+    multipliers = np.linalg.eigvals(Phi)
+    base = np.log(multipliers[np.abs(multipliers) > 1e-250] + 0j) / period
+    out = np.empty(len(near), dtype=complex)
+    for k, value in enumerate(near):
+        turns = np.round((value.imag - base.imag) / (3 * abs(omega)))
+        shifted = base + 3j * abs(omega) * turns
+        out[k] = shifted[np.argmin(np.abs(shifted - value))]
+    return out

@@ -1,0 +1,116 @@
+"""The judgement of linearisations: corrected modes, findings and the verdict."""
+
+from collections.abc import Iterator, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import azimuths, blades, disagreement, floquet, mode_tables, structure, tables, tracking
+from .findings import DEFECT, Finding
+from .frames import in_rotating_frame
+from .judged import AVERAGED, FLOQUET, JudgedSet, Judgement, by_level
+from .lin_file import read
+from .mode_tables import is_table
+from .modes import Mode, Spectrum, spectrum
+from .sets import AzimuthSet, collect
+
+Array = NDArray[np.float64]
+
+STRUCTURAL_DEFECTS = (
+    "index shift",
+    "kinematic rows",
+    "states reordered",
+    "missing state",
+    "zero column",
+    "asymmetric stiffness",
+)
+"""Defects after which comparisons between blades and azimuths would only repeat them."""
+
+MAX_PERIODIC = 1e-4
+"""Largest relative difference of Floquet's frequencies from those of the mean matrix at which the mean is kept."""
+
+
+def judge(paths: Sequence[Path]) -> Judgement:
+    """Judge linearisations of OpenFAST, and tables of modes.
+
+    Args:
+        paths: ``.lin`` files, of which those with the same stem are the azimuths of one operating point; tables of modes
+            (``.csv``, HAWCStab2's ``.cmb``).
+
+    Raises:
+        CaseError: if a file cannot be used.
+    """
+    listed = tuple(mode_tables.read(path) for path in paths if is_table(path))
+    sets = tuple(judge_set(each) for each in collect([read(path) for path in paths if not is_table(path)]))
+    tracked = tracking.track(sets)
+    findings = [finding for each in sets for finding in each.findings]
+    findings += [finding for table in listed for finding in mode_tables.findings(table)]
+    findings += [*tracking.drift(sets), *tracking.lines(sets, tracked)]
+    return Judgement(sets, tracked, listed, by_level(findings))
+
+
+def judge_set(each: AzimuthSet) -> JudgedSet:
+    """Judge the azimuths of one operating point."""
+    findings = [
+        *tables.headers(each),
+        *tables.order(each),
+        *tables.flags(each),
+        *tables.completeness(each),
+        *tables.kinematics(each),
+        *azimuths.coverage(each),
+        *azimuths.steadiness(each),
+        *structure.columns(each),
+        *structure.symmetry(each),
+    ]
+    broken = any(finding.level == DEFECT and finding.name in STRUCTURAL_DEFECTS for finding in findings)
+    A, frame = (each.A, ()) if broken else in_rotating_frame(each)
+    findings += frame
+    found = spectrum(each, A)
+    if not broken:
+        findings += blades.equality(blades.differences(each), each)
+        findings += [*structure.generator(each, found), *structure.units(each, found)]
+    if not any(finding.level == DEFECT and finding.name != "truncated digits" for finding in findings):
+        findings += disagreement.agreement(each, A, found)
+    findings += structure.digits(each, found.modes)
+    modes, method = (found.modes, AVERAGED) if broken else _periodic(each, found)
+    if not any(finding.level == DEFECT for finding in findings):
+        findings += structure.damping(each, modes)
+    return JudgedSet(each, modes, method, tuple(_once(by_level(findings))))
+
+
+def _once(findings: Sequence[Finding]) -> Iterator[Finding]:
+    seen: set[str] = set()
+    for finding in findings:
+        if finding.name not in seen:
+            yield finding
+        seen.add(finding.name)
+
+
+def _periodic(each: AzimuthSet, found: Spectrum) -> tuple[tuple[Mode, ...], str]:
+    """Floquet's exponents in place of the eigenvalues of the mean matrix, where the azimuths determine them."""
+    if each.blades != 3 or not found.modes or abs(each.omega) < azimuths.STANDSTILL:
+        return found.modes, AVERAGED
+    fit = floquet.interpolate(each.azimuths, found.matrices)
+    if not fit.harmonics:
+        return found.modes, AVERAGED
+    near = np.array([mode.eigenvalue for mode in found.modes])
+    structural = np.array([mode.structural > 0.5 for mode in found.modes])
+    adjoints, shapes = (
+        np.array([mode.adjoint for mode in found.modes]),
+        np.array([mode.shape for mode in found.modes]).T,
+    )
+    estimate = floquet.second_order(found.matrices, each.omega, near, adjoints, shapes) / np.abs(near)
+    if not structural.any() or estimate[structural].max() < MAX_PERIODIC / 2:
+        return found.modes, AVERAGED
+    values = floquet.exponents(fit, each.omega, near)
+    change = np.abs(values - near) / np.abs(near)
+    if change[structural].max() < MAX_PERIODIC:
+        return found.modes, AVERAGED
+    fewer = floquet.exponents(floquet.interpolate(each.azimuths, found.matrices, fit.harmonics - 1), each.omega, near)
+    modes = tuple(
+        replace(mode, eigenvalue=complex(value), uncertainty=float(np.hypot(mode.uncertainty, abs(value - other))))
+        for mode, value, other in zip(found.modes, values, fewer, strict=True)
+    )
+    return modes, FLOQUET

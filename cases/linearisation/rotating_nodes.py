@@ -1,0 +1,83 @@
+"""States of BeamDyn's nodes: whether they are in the frame that turns with the blade.
+
+BeamDyn linearises in a frozen frame, the root's at this instant. Its Jacobian then lacks the Coriolis terms, which a
+rotating frame has: the accelerations of a node contain −2 ω × v, whatever the beam is.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .sets import AzimuthSet
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class NodeTriplet:
+    """Indices of the three displacements of a node in X, Y, Z, and of their rates."""
+
+    blade: int
+    node: int
+    what: str
+    displacements: tuple[int, ...]
+    rates: tuple[int, ...]
+
+
+def triplets(each: AzimuthSet) -> tuple[NodeTriplet, ...]:
+    """All triplets of translations and rotations."""
+    rate_of = dict(each.pairs)
+    found: dict[tuple[int, int, str], dict[int, int]] = {}
+    for i, state in enumerate(each.states):
+        if state.module == "BD" and state.blade and not state.rate and i in rate_of and (at := state.direction):
+            found.setdefault((state.blade, at[2], at[0]), {})[at[1]] = i
+    return tuple(
+        NodeTriplet(blade, node, what, tuple(axes[k] for k in range(3)), tuple(rate_of[axes[k]] for k in range(3)))
+        for (blade, node, what), axes in found.items()
+        if len(axes) == 3
+    )
+
+
+def coriolis_content(each: AzimuthSet) -> float | None:
+    """Coriolis terms of the translations relative to those of a rotating frame: 1 in a rotating frame, 0 in a frozen one.
+
+    In A, the rate of a node's displacement in Y acts on its acceleration in Z by −2 Ω, and in Z on Y by 2 Ω. The mean over
+    nodes, blades and azimuths of their difference, over 4 Ω; damping and gravity contribute equal parts with opposite
+    signs. None without nodes or rotation.
+    """
+    omega = each.omega
+    nodes = [t for t in triplets(each) if t.what == "translational"]
+    if not nodes or abs(omega) < 1e-3:
+        return None
+    terms = [each.A[:, t.rates[1], t.rates[2]] - each.A[:, t.rates[2], t.rates[1]] for t in nodes]
+    return float(np.mean(terms) / (4 * omega))
+
+
+def angular_velocities(each: AzimuthSet) -> dict[int, Array]:
+    """Angular velocity of each blade in its own axes, rad/s (azimuth, axis): that of its nodes nearest the root."""
+    out: dict[int, Array] = {}
+    rotations = sorted((t for t in triplets(each) if t.what == "rotational"), key=lambda t: t.node)
+    for t in rotations:
+        out.setdefault(t.blade, each.values[:, list(t.rates)])
+    return out
+
+
+def rotated(each: AzimuthSet, A: Array) -> Array:
+    """State matrices with the nodes' states in the rotating frame, from those in the frozen frame.
+
+    The states of a triplet are q, q̇ in the rotating frame and q, v = q̇ + ω × q in the frozen one, hence
+    A_r = S A S⁻¹ + diag(−ω̃), S = [[1, 0], [−ω̃, 1]] (OpenFAST pull request 3400).
+    """
+    omega = angular_velocities(each)
+    out = np.empty_like(A)
+    for k in range(len(A)):
+        S, turning = np.eye(len(each.states)), np.zeros_like(A[k])
+        for t in triplets(each):
+            w = omega[t.blade][k]
+            cross = np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
+            S[np.ix_(t.rates, t.displacements)] = -cross
+            turning[np.ix_(t.displacements, t.displacements)] = -cross
+            turning[np.ix_(t.rates, t.rates)] = -cross
+        out[k] = np.linalg.solve(S.T, (S @ A[k]).T).T + turning
+    return out

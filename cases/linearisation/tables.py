@@ -1,0 +1,223 @@
+"""Checks of what a set's files state: headers, flags, tables of states, and completeness of the blades."""
+
+from collections import Counter, defaultdict
+from collections.abc import Iterator
+
+import numpy as np
+
+from .findings import DEFECT, LIMIT, NOTE, Finding, listed
+from .sets import AzimuthSet
+from .states import RATE, STRUCTURAL
+
+FEW_DIGITS = 4
+"""Significant digits of OpenFAST's default format; fewer were cut off."""
+
+
+def headers(each: AzimuthSet) -> Iterator[Finding]:
+    """Overflowed fields, and versions that differ within the set."""
+    fields = Counter(field for file in each.files for field in file.overflowed)
+    if fields:
+        yield Finding(
+            "header overflow",
+            DEFECT,
+            each.name,
+            f"asterisks in place of {listed(list(fields))} ({len(fields)} fields)",
+            "the program that wrote the file lacks columns for these numbers; the tables were counted instead",
+            float(len(fields)),
+        )
+    versions = sorted({file.version for file in each.files})
+    if len(versions) > 1:
+        yield Finding(
+            "version drift",
+            DEFECT,
+            each.name,
+            f"the azimuths were written by {len(versions)} versions ({listed(versions)})",
+            "linearise all azimuths with one version",
+            float(len(versions)),
+        )
+    digits = min(file.digits for file in each.files)
+    if digits < FEW_DIGITS:
+        yield Finding(
+            "truncated digits",
+            DEFECT,
+            each.name,
+            f"entries of A have {digits} significant digits",
+            'set OutFmt of the main input file to at least "ES18.9E3" and linearise again',
+            float(digits),
+        )
+
+
+def order(each: AzimuthSet) -> Iterator[Finding]:
+    """Orders of the states that differ between files, and tables of states and derivatives that contradict each other."""
+    if len(set(each.order)) > 1:
+        other = [file.path.name for file, k in zip(each.files, each.order, strict=True) if k != each.order[0]]
+        yield Finding(
+            "states reordered",
+            NOTE,
+            each.name,
+            f"{len(other)} of {len(each.files)} files have another order of the states ({listed(other)})",
+            "sorted by their descriptions; programs that read by position mix them up",
+            float(len(other)),
+        )
+    for file in each.files:
+        if not file.derivatives:
+            continue
+        wrong = [
+            k + 1
+            for k, (state, slope) in enumerate(zip(file.states, file.derivatives, strict=False))
+            if not _belongs(state.text, slope.text)
+        ]
+        if wrong or len(file.derivatives) != len(file.states):
+            yield Finding(
+                "states reordered",
+                DEFECT,
+                each.name,
+                f"{file.path.name}: {len(wrong)} rows of the tables of states and of derivatives name different states "
+                f"(first: row {wrong[0] if wrong else len(file.states)})",
+                "the tables were edited or are of different models: linearise again",
+                float(len(wrong)),
+            )
+            break
+
+
+def _belongs(state: str, slope: str) -> bool:
+    """Whether the derivative's description is that of the state; its unit and module may be written differently."""
+    return (
+        slope.replace(RATE, "").split("(")[0].split(",")[0].rstrip("/s")
+        == state.replace(RATE, "").split("(")[0].split(",")[0].rstrip("/s")
+        and slope.count(RATE) == state.count(RATE) + 1
+    )
+
+
+def flags(each: AzimuthSet) -> Iterator[Finding]:
+    """Flags of the rotating frame that contradict the description."""
+    wrong = [s for s in each.states if s.expected_rotating is not None and s.rotating != s.expected_rotating]
+    frozen_on_request = [s for s in wrong if s.module == "BD" and not s.rotating]
+    wrong = [s for s in wrong if s not in frozen_on_request]
+    if frozen_on_request:
+        yield Finding(
+            "fixed blade states",
+            NOTE,
+            each.name,
+            f"{len(frozen_on_request)} states of BeamDyn are flagged as fixed",
+            "as with RotStates = False; they are transformed to the rotating frame",
+            float(len(frozen_on_request)),
+        )
+    if wrong:
+        states = listed([f"{s.label} flagged {'T' if s.rotating else 'F'}" for s in wrong])
+        yield Finding(
+            "frame flag",
+            DEFECT,
+            each.name,
+            f"{len(wrong)} flags of the rotating frame contradict the descriptions ({states})",
+            "states of blades turn with the rotor, others do not: the frame was taken from the descriptions",
+            float(len(wrong)),
+        )
+
+
+def completeness(each: AzimuthSet) -> Iterator[Finding]:
+    """Displacements without rates, rates without displacements, and motions that some blades lack."""
+    index = each.index
+    single = [
+        state.label
+        for state in each.states
+        if state.module in STRUCTURAL and (state.kind, state.blade, not state.rate) not in index
+    ]
+    if single:
+        yield Finding(
+            "missing state",
+            DEFECT,
+            each.name,
+            f"{len(single)} states of second order lack their displacement or rate ({listed(single)})",
+            "the table was edited: linearise again",
+            float(len(single)),
+        )
+    blades: dict[str, set[int]] = defaultdict(set)
+    family: dict[str, str] = {}
+    for state in each.states:
+        if state.blade and not state.rate and state.module in STRUCTURAL:
+            blades[state.kind].add(state.blade)
+            family[state.kind] = state.family
+    every = set().union(*blades.values()) if blades else set()
+    lacking = [
+        f"{family[kind]} of blade {blade}"
+        for kind, have in blades.items()
+        for blade in sorted(every - have)
+        if every - have
+    ]
+    if lacking:
+        yield Finding(
+            "missing state",
+            DEFECT,
+            each.name,
+            f"{len(lacking)} motions are missing that other blades have ({listed(lacking)})",
+            "enable the degree of freedom on all blades",
+            float(len(lacking)),
+        )
+    numbered = {state.family for state in each.states if state.module == "ED"}
+    skipped = [
+        f"{name} 1"
+        for name in ("flapwise", "edgewise", "tower fore-aft", "tower side-side")
+        if f"{name} 2" in numbered and f"{name} 1" not in numbered
+    ]
+    if skipped:
+        yield Finding(
+            "missing state",
+            DEFECT,
+            each.name,
+            f"a second mode is enabled without the first ({listed(skipped)})",
+            "enable the first mode",
+            float(len(skipped)),
+        )
+    if each.blades and len(every) == 1 and each.omega > 1e-3:
+        yield Finding(
+            "single blade",
+            LIMIT,
+            each.name,
+            "only one blade moves while the rotor turns",
+            "enable the degrees of freedom of all blades, or stop the rotor",
+            1.0,
+        )
+
+
+def kinematics(each: AzimuthSet) -> Iterator[Finding]:
+    """Rows of displacements: unit vectors of their rates."""
+    wrong: dict[int, int | None] = {}
+    for A in each.A:
+        for q, v in each.pairs:
+            unit = np.zeros(len(A))
+            unit[v] = 1.0
+            if np.abs(A[q] - unit).max() > 1e-3:
+                ones = np.flatnonzero(np.abs(A[q] - 1) < 1e-3)
+                wrong[q] = int(ones[0]) - v if len(ones) == 1 and np.count_nonzero(np.abs(A[q]) > 1e-3) == 1 else None
+    if not wrong:
+        return
+    shift, times = Counter(wrong.values()).most_common(1)[0]
+    states = listed([each.states[q].label for q in wrong])
+    if shift and times > 1 and times > len(wrong) / 2:
+        yield Finding(
+            "index shift",
+            DEFECT,
+            each.name,
+            f"the rows of {times} displacements ({states}) are the rates {shift:+d} states further on",
+            "a block of A is stored at the wrong index: report it to the authors of the program",
+            float(shift),
+        )
+    elif None not in wrong.values():
+        yield Finding(
+            "states reordered",
+            DEFECT,
+            each.name,
+            f"the rows of {len(wrong)} displacements ({states}) are the rates of other states",
+            "the table of states does not belong to the matrix: linearise again",
+            float(len(wrong)),
+        )
+    else:
+        yield Finding(
+            "kinematic rows",
+            DEFECT,
+            each.name,
+            f"the rows of {len(wrong)} displacements ({states}) are not those of their rates",
+            "A is damaged, or the states are not displacements: linearise again",
+            float(len(wrong)),
+        )

@@ -1,0 +1,1 @@
+"""Judgements of linearisations as text."""

@@ -1,0 +1,162 @@
+"""A judgement of linearisations for the terminal and as plain data: verdict, findings, named modes."""
+
+from collections.abc import Iterator
+
+import numpy as np
+from rich.table import Table
+
+from ...cases.linearisation.findings import DEFECT, LIMIT, NOTE, Finding
+from ...cases.linearisation.judged import NO, OPEN, YES, JudgedSet, Judgement, TrackedMode
+from ...cases.linearisation.mode_tables import ModeTable
+from ...cases.linearisation.modes import Mode
+from ..shared.table_columns import tables
+
+MARKS = {DEFECT: "✘", LIMIT: "○", NOTE: "–"}
+
+MEANING = {
+    YES: "no defect was found",
+    NO: "these linearisations have a defect",
+    OPEN: "no defect was found, but the files do not show everything",
+}
+
+MOST = 20
+"""Largest number of modes listed without ``--all``."""
+
+
+def verdict(judgement: Judgement) -> str:
+    """The first line: the verdict, what was read, and the number of findings."""
+    files = sum(len(judged.each.files) for judged in judgement.sets)
+    parts = [_count(files, "linearisation"), _count(len(judgement.sets), "operating point")] if files else []
+    parts += [_count(len(judgement.tables), "table of modes", "tables of modes")] if judgement.tables else []
+    defects = sum(finding.level == DEFECT for finding in judgement.findings)
+    found = f"; {_count(defects, 'defect')}" if defects else ""
+    return f"{judgement.verdict}: {MEANING[judgement.verdict]} ({', '.join(parts)}{found})"
+
+
+def findings(judgement: Judgement) -> Iterator[str]:
+    """One line for each finding, with its set if there are several."""
+    several = len(judgement.sets) + len(judgement.tables) > 1
+    for finding in judgement.findings:
+        where = f"{finding.where}: " if several else ""
+        yield f"{MARKS[finding.level]} {where}{finding}"
+
+
+def modes(judgement: Judgement, width: int, every: bool = False) -> Iterator[Table]:
+    """Tables of the named modes: of one operating point in full, of several as a Campbell diagram."""
+    if len(judgement.sets) == 1:
+        yield from _one(judgement.sets[0], width, every)
+    elif judgement.sets:
+        yield from _several(judgement, width, every)
+    for table in judgement.tables:
+        yield from _listed(table, width, every)
+
+
+def _one(judged: JudgedSet, width: int, every: bool) -> Iterator[Table]:
+    shown = _shown(judged.modes, every)
+    rows = [
+        (
+            mode.name,
+            f"{mode.frequency:.5g}",
+            _uncertainty(mode),
+            f"{100 * mode.damping:.3g}",
+            f"{100 * mode.confidence:.0f}",
+        )
+        for mode in shown
+    ]
+    title = f"{judged.each.name}: {_rpm(judged)}, {judged.method}"
+    head = ("mode", "Hz", "± %", "damping %", "participation %")
+    yield from tables(head, rows, width, title)
+
+
+def _several(judgement: Judgement, width: int, every: bool) -> Iterator[Table]:
+    head = ["mode", *(f"{judged.each.omega * 30 / np.pi:.4g} rpm" for judged in judgement.sets)]
+    rows = [track for track in judgement.tracked if every or _structural(track)]
+    rows = rows if every else rows[:MOST]
+    yield from tables(
+        head,
+        [(t.name, *("" if m is None else f"{m.frequency:.5g}" for m in t.at)) for t in rows],
+        width,
+        "Frequency in Hz",
+    )
+    yield from tables(
+        head,
+        [(t.name, *("" if m is None else f"{100 * m.damping:.3g}" for m in t.at)) for t in rows],
+        width,
+        "Damping in %",
+    )
+
+
+def _listed(table: ModeTable, width: int, every: bool) -> Iterator[Table]:
+    factor, unit = (60.0, "rpm") if table.unit == "Hz" else (1.0, table.unit)
+    head = ["mode", *(f"{factor * point:.4g} {unit}" for point in table.points)]
+    pairs = list(zip(table.names, table.frequencies, strict=True))
+    rows = [(name, *("" if np.isnan(f) else f"{f:.5g}" for f in values)) for name, values in pairs]
+    yield from tables(head, rows if every else rows[:MOST], width, f"{table.name}: frequency in Hz")
+
+
+def _structural(track: TrackedMode) -> bool:
+    return any(mode is not None and mode.structural > 0.5 for mode in track.at)
+
+
+def _shown(found: tuple[Mode, ...], every: bool) -> list[Mode]:
+    return list(found) if every else [mode for mode in found if mode.structural > 0.5][:MOST]
+
+
+def _uncertainty(mode: Mode) -> str:
+    percent = 100 * mode.relative_uncertainty
+    return "?" if not np.isfinite(percent) or percent >= 100 else f"{percent:.2g}"
+
+
+def _rpm(judged: JudgedSet) -> str:
+    wind = judged.each.files[0].wind_speed
+    at = f" at {wind:g} m/s" if np.isfinite(wind) and wind > 0 else ""
+    return f"{judged.each.omega * 30 / np.pi:.4g} rpm{at}, {_count(len(judged.each.files), 'azimuth')}"
+
+
+def _count(n: int, what: str, several: str = "") -> str:
+    return f"{n} {what if n == 1 else several or what + 's'}"
+
+
+def plain(judgement: Judgement) -> dict[str, object]:
+    """The judgement as data for JSON."""
+    return {
+        "verdict": judgement.verdict,
+        "findings": [_plain_finding(finding) for finding in judgement.findings],
+        "operating_points": [
+            {
+                "name": judged.each.name,
+                "files": [str(file.path) for file in judged.each.files],
+                "omega_rad_s": judged.each.omega,
+                "wind_speed_m_s": _finite(judged.each.files[0].wind_speed),
+                "method": judged.method,
+                "modes": [_plain_mode(mode) for mode in judged.modes],
+            }
+            for judged in judgement.sets
+        ],
+    }
+
+
+def _plain_finding(finding: Finding) -> dict[str, object]:
+    return {
+        "name": finding.name,
+        "level": finding.level,
+        "where": finding.where,
+        "what": finding.what,
+        "remedy": finding.remedy,
+        "value": _finite(finding.value),
+    }
+
+
+def _plain_mode(mode: Mode) -> dict[str, object]:
+    return {
+        "name": mode.name,
+        "frequency_hz": mode.frequency,
+        "damping_ratio": mode.damping,
+        "relative_uncertainty": _finite(mode.relative_uncertainty),
+        "participation": dict(mode.participation),
+        "structural": mode.structural,
+    }
+
+
+def _finite(value: float) -> float | None:
+    return value if np.isfinite(value) else None

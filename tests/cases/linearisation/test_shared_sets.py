@@ -1,0 +1,56 @@
+"""Linearisations of public turbines: set SOUTHWELL_LINEARISED to a folder with them."""
+
+import os
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.linearisation.judged import Judgement
+from southwell.cases.linearisation.judgement import judge
+from southwell.cases.linearisation.lin_file import read
+
+FOLDER = os.environ.get("SOUTHWELL_LINEARISED")
+
+pytestmark = pytest.mark.skipif(not FOLDER, reason="set SOUTHWELL_LINEARISED to public linearisations")
+
+
+def judged(pattern: str) -> Judgement:
+    paths = sorted(Path(FOLDER or "").glob(pattern))
+    if not paths:
+        pytest.skip(f"SOUTHWELL_LINEARISED has no {pattern}")
+    return judge(paths)
+
+
+def test_a_blade_at_rest_needs_no_transformation() -> None:
+    """Eigenvalues of the file's own matrix."""
+    found = judged("nrel5mw/blade-only/*.lin")
+    values = np.linalg.eigvals(read(Path(FOLDER or "") / "nrel5mw/blade-only/Main.1.lin").A)
+    expected = np.sort(np.abs(values[values.imag > 0])) / (2 * np.pi)
+    assert found.verdict == "Yes"
+    assert [mode.frequency for mode in found.sets[0].modes] == pytest.approx(expected.tolist(), rel=1e-9)
+
+
+def test_three_azimuths_in_operation_are_open() -> None:
+    found = judged("nrel5mw/rotating/*.lin")
+    assert found.verdict == "Open"
+    assert [mode.name for mode in found.sets[0].modes][:3] == [
+        "flapwise 1 backward",
+        "flapwise 1 collective",
+        "flapwise 1 forward",
+    ]
+
+
+def test_the_frame_of_beamdyn_is_found() -> None:
+    """OpenFAST issue 3394: the correction raises the tower's side-side mode by 1.9 %."""
+    found = judged("nrel5mw/5MW_Land_BD_Linear.1.lin")
+    assert found.verdict == "No"
+    assert [finding.name for finding in found.findings][:2] == ["frame flag", "truncated digits"]
+    assert found.findings[0].value == pytest.approx(0.0, abs=1e-3)
+
+
+def test_a_floating_turbine_has_its_platform_modes() -> None:
+    found = judged("iea15-semi/*.lin")
+    names = [mode.name for mode in found.sets[0].modes if mode.structural > 0.5]
+    assert names == ["platform surge", "platform pitch", "platform heave", "tower fore-aft 1"]
+    assert found.verdict == "Open"
