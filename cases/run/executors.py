@@ -9,7 +9,6 @@ running when the process that started them is killed, and needs the same initial
 
 import gc
 import os
-import signal
 import tempfile
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
@@ -19,7 +18,7 @@ from pathlib import Path
 from threading import Thread
 from typing import Any
 
-from ...references.protocol import launch
+from ...references.protocol import launch, portable
 from ...references.protocol.supervisor import OBJECTS
 from .software import Software
 
@@ -108,14 +107,14 @@ def _starting() -> Iterator[None]:
     They import nothing from the current folder (``random.py``), and take an interrupt only when they are ready, where it is no
     traceback.
     """
-    path, mask = os.environ.get(SAFE_PATH), signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
-    os.environ[SAFE_PATH] = "1"
-    try:
-        yield
-    finally:
-        os.environ.pop(SAFE_PATH)
-        os.environ.update({} if path is None else {SAFE_PATH: path})
-        signal.pthread_sigmask(signal.SIG_SETMASK, mask)
+    path = os.environ.get(SAFE_PATH)
+    with portable.interrupts_blocked():
+        os.environ[SAFE_PATH] = "1"
+        try:
+            yield
+        finally:
+            os.environ.pop(SAFE_PATH)
+            os.environ.update({} if path is None else {SAFE_PATH: path})
 
 
 def _begin(scratch: Path | None) -> None:
@@ -123,9 +122,8 @@ def _begin(scratch: Path | None) -> None:
     os.environ.pop(SAFE_PATH, None)  # not meant for processes started by foreign codes
     if scratch:
         os.environ["TMPDIR"] = tempfile.tempdir = str(scratch)
-    signal.signal(signal.SIGINT, lambda *_: None)  # unlike SIG_IGN, not inherited by foreign codes
-    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGINT})
-    launch.prepare()
+    portable.ignore_interrupts()
+    launch.warm_up()
     gc.set_threshold(OBJECTS)
     Thread(target=_end_with_parent, daemon=True).start()
 

@@ -89,7 +89,7 @@ def verify(request: Request, observer: Observer | None = None) -> Run:
     """
     observer, execution = observer or Observer(), request.execution
     with _store(execution.fresh, observer) as users, ExitStack() as stack:
-        launch.prepare()  # for the descriptions of codes, while the cases are read
+        launch.warm_up()  # for the descriptions of codes, while the cases are read
         plan = planned(request, observer)
         if execution.out is None:
             with _pool(execution, plan, None, observer) as pool:

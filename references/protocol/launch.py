@@ -15,6 +15,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import IO
 
+from . import portable
 from .supervisor import REQUEST
 
 SUPERVISOR = Path(__file__).with_name("supervisor.py")
@@ -100,6 +101,12 @@ class Child:
         for stream in (self.stdin, self.stdout, self.stderr):
             stream.close()
         os.close(self._status)
+
+
+def warm_up() -> None:
+    """Start the process that forks, where processes are forked."""
+    if portable.forks():
+        prepare()
 
 
 def prepare() -> _Forker:

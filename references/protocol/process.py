@@ -8,12 +8,10 @@ import os
 import selectors
 import signal
 import time
-from contextlib import suppress
 from dataclasses import dataclass
-from pathlib import Path
 from typing import IO, Literal
 
-from . import launch
+from . import launch, portable
 
 KEPT = 8_192
 """Number of last bytes of standard error that are kept."""
@@ -83,12 +81,40 @@ def converse(module: str, request: bytes, expected: int, limits: Limits) -> tupl
         expected: number of answers.
         limits: for each answer.
     """
+    if not portable.forks():
+        return _spawned(module, request, expected, limits)
     child = launch.start(module, ADDRESS_SPACE * limits.memory)
     try:
         lines, stopped, stderr = _listen(child, request, expected, limits)
     finally:
         _end(child)
     return lines, stopped or _crash(child.returncode or 0, stderr.decode("utf-8", "replace"))
+
+
+def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
+    """The same where processes cannot be forked."""
+    said = portable.spawned(
+        module,
+        request,
+        expected + 1,  # the first line says that it is ready
+        time_limit=lambda lines: limits.seconds if lines else START,
+        check=lambda pid: _too_large(portable.resident([pid, *launch.descendants(pid)]), limits),
+        longest_line=LONGEST_LINE,
+        kept=KEPT,
+        look=LOOK,
+    )
+    if not said.stopped:
+        return said.lines[1:], _crash(said.code, said.stderr.decode("utf-8", "replace"))
+    kinds: dict[str, Kind] = {"no answer within": "timed out", "an answer of more than": "nonsense"}
+    kind = next((kind for start, kind in kinds.items() if said.stopped.startswith(start)), "crashed")
+    return said.lines[1:], Failure(kind, said.stopped)
+
+
+def _too_large(used: int, limits: Limits) -> str:
+    """Why a process is stopped that uses more memory than its limit; empty below it."""
+    if used <= limits.memory:
+        return ""
+    return f"stopped: {used / 2**30:.3g} GiB of memory: the limit is {limits.memory / 2**30:g} GiB"
 
 
 def _listen(
@@ -109,9 +135,8 @@ def _listen(
                 return lines[1:], Failure("timed out", f"no answer within {within:g} s"), stderr
             if now >= next_check:
                 next_check = now + LOOK
-                if (used := _resident(child.pid)) > limits.memory:
-                    most = f"the limit is {limits.memory / 2**30:g} GiB"
-                    return lines[1:], Failure("crashed", f"stopped: {used / 2**30:.3g} GiB of memory: {most}"), stderr
+                if why := _too_large(_resident(child.pid), limits):
+                    return lines[1:], Failure("crashed", why), stderr
             events = ready.select(0.0 if ended else min(LOOK, deadline - now))
             if ended and not any(key.fileobj is not stdin for key, _ in events):
                 break  # nothing is left in its pipes
@@ -170,11 +195,7 @@ def _end(child: launch.Child) -> None:
 
 def _resident(pid: int | None) -> int:
     """Resident memory of all descendants of a process, if it has started, bytes."""
-    pages = 0
-    for descendant in launch.descendants(pid) if pid else ():
-        with suppress(OSError, IndexError, ValueError):
-            pages += int(Path(f"/proc/{descendant}/statm").read_text(encoding="ascii").split()[1])
-    return pages * os.sysconf("SC_PAGE_SIZE")
+    return portable.resident(launch.descendants(pid) if pid else [])
 
 
 def _crash(status: int, stderr: str) -> Failure:

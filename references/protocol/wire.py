@@ -4,7 +4,6 @@ Floats are preserved exactly (shortest round-trip representation); ``Infinity`` 
 array, which has thousands of numbers, is ``{"sizes": […], "base64": …}``: little-endian pairs of 64-bit floats.
 """
 
-import fcntl
 import json
 import os
 import sys
@@ -20,6 +19,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.mechanism.description import Mechanism
 from ...core.modes import Modes
+from . import portable
 from .fingerprint import Fingerprint
 from .interface import MechanismModes
 from .process import raised
@@ -27,9 +27,6 @@ from .process import raised
 Reply = dict[str, Any]
 
 COMPLEX = np.dtype("<c16")
-
-HIGH = 200
-"""Lowest file descriptor of the pipe for answers; some codes write to descriptor 3."""
 
 
 def encode(value: Blade | Modes | MechanismModes | Fingerprint) -> dict[str, Any]:
@@ -97,7 +94,8 @@ def serve(answer: Any) -> None:
 
 def answers_pipe() -> TextIO:
     """Reserve standard output for answers: redirect prints of the code to standard error, and its input to the null device."""
-    pipe = os.fdopen(fcntl.fcntl(1, fcntl.F_DUPFD_CLOEXEC, HIGH), "w", encoding="utf-8")
+    pipe = os.fdopen(portable.duplicate(1), "w", encoding="utf-8")
+    portable.end_with_input()
     os.dup2(2, 1)
     nothing = os.open(os.devnull, os.O_RDONLY)
     os.dup2(nothing, 0)
