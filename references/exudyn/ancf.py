@@ -82,9 +82,9 @@ class ExudynAncf(BladeAdapter):
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
         """From Exudyn's mass matrix; see ``interface.BladeAdapter``."""
         M, _, _ = _matrices(blade, 0.0, elements)
-        place = np.zeros((elements + 1, 3))
-        place[:, 0] = blade.hub_radius + np.linspace(0.0, blade.length, elements + 1)
-        motions = rigid_motions(place)
+        position = np.zeros((elements + 1, 3))
+        position[:, 0] = blade.hub_radius + np.linspace(0.0, blade.length, elements + 1)
+        motions = rigid_motions(position)
         slopes = np.zeros_like(motions)
         slopes[:, :, 3:] = rigid_motions(np.array([1.0, 0.0, 0.0]))[:, 3:]
         q = np.stack([motions, slopes], axis=1).reshape(-1, 6)

@@ -119,8 +119,8 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
         flip = np.eye(4)
         if tree.screw[j, axis] < 0:  # a rotation by π about another axis reverses this one
             flip = sp.pose(sp.rotation((axis + 1) % 3, np.array(np.pi)), np.zeros(3))
-        before = tree.parent[j]
-        start = sp.inverse(rotations[before]) if before >= 0 else np.eye(4)
+        parent = tree.parent[j]
+        start = sp.inverse(rotations[parent]) if parent >= 0 else np.eye(4)
         kinds.append(getattr(exu.JointType, ("Prismatic" if axis < 3 else "Revolute") + "XYZ"[axis % 3]))
         steps.append(start @ tree.fixed[j] @ flip)
         rotations.append(flip)

@@ -114,15 +114,15 @@ class ExudynGeometricallyExact(BladeAdapter):
         A = _affine(state.axes)
         turns = np.zeros((len(beam.ends), 3, 6))
         turns[:, :, 3:] = np.swapaxes(state.axes, 1, 2)
-        q = A @ np.concatenate([rigid_motions(state.place), turns], axis=1)
+        q = A @ np.concatenate([rigid_motions(state.position), turns], axis=1)
         return of_matrix((np.swapaxes(q, 1, 2) @ np.kron(beam.mass, np.eye(3)) @ q).sum(axis=0), len(beam.ends) - 1)
 
 
 @dataclass(frozen=True)
 class Poses:
-    """Positions ``place`` (n, 3), m, and rotations ``axes`` (n, 3, 3) of the nodes, in axes that turn with the hub."""
+    """Positions ``position`` (n, 3), m, and rotations ``axes`` (n, 3, 3) of the nodes, in axes that turn with the hub."""
 
-    place: Array
+    position: Array
     axes: Array
 
 
@@ -150,7 +150,7 @@ def assemble(blade: Blade, elements: int) -> Beam:
     exu, container, mbs = ex.system()
     items, ends = exu.itemInterface, element_ends(blade, elements, INTERVALS, step_elements=False)
     at = line(blade, ends[:, None])
-    reference = Poses(at.place[:, 0], at.axes[:, 0])
+    reference = Poses(at.position[:, 0], at.axes[:, 0])
     nodes = [
         mbs.AddNode(items.NodeRigidBodyEP(referenceCoordinates=q, addConstraintEquation=False))
         for q in _coordinates(reference)
@@ -216,19 +216,19 @@ def _balanced(beam: Beam, state: Poses, omega: float) -> Poses | None:
         force, K = elastic(beam, state)
         inertia, softening = centrifugal(beam, state, omega)
         step = -spsolve(sparse.csc_array(K + softening)[6:, 6:], (force + inertia)[6:])
-        move, turn = np.split(np.append(np.zeros(6), step).reshape(-1, 6), 2, axis=1)
-        if not np.abs(turn).max() < MAX_TURN:
+        move, rotation = np.split(np.append(np.zeros(6), step).reshape(-1, 6), 2, axis=1)
+        if not np.abs(rotation).max() < MAX_TURN:
             return None
-        state = moved(state, np.hstack([move, turn]))
-        if max(np.abs(move).max() / beam.ends[-1], np.abs(turn).max()) < CONVERGED:
+        state = moved(state, np.hstack([move, rotation]))
+        if max(np.abs(move).max() / beam.ends[-1], np.abs(rotation).max()) < CONVERGED:
             return state
     return None
 
 
 def moved(poses: Poses, step: Array) -> Poses:
     """Poses after displacements and local rotation vectors ``step`` (n, 6)."""
-    turn = Rotation.from_rotvec(step[:, 3:]).as_matrix()
-    return Poses(poses.place + step[:, :3], poses.axes @ turn)
+    rotation = Rotation.from_rotvec(step[:, 3:]).as_matrix()
+    return Poses(poses.position + step[:, :3], poses.axes @ rotation)
 
 
 def linearized(beam: Beam, state: Poses, omega: float) -> tuple[Any, Any, Any]:
@@ -253,7 +253,7 @@ def _affine(axes: Array) -> Array:
 def centrifugal(beam: Beam, state: Poses, omega: float) -> tuple[Array, Any]:
     """Inertia force Ω² Aᵀ (m ⊗ B²) a (6n,) of a steady state, and its derivative (6n, 6n)."""
     A = _affine(state.axes)
-    a = np.concatenate([np.swapaxes(state.axes, 1, 2), state.place[:, None]], axis=1)  # (n, 4, 3)
+    a = np.concatenate([np.swapaxes(state.axes, 1, 2), state.position[:, None]], axis=1)  # (n, 4, 3)
     force = omega**2 * beam.mass @ a @ (SPIN @ SPIN).T
     K = omega**2 * np.swapaxes(A, 1, 2) @ np.kron(beam.mass, SPIN @ SPIN) @ A
     # second order of a rotation: ½ θ̃² e = ½ (θ θ·e − e θ·θ)
@@ -274,7 +274,7 @@ def elastic(beam: Beam, state: Poses) -> tuple[Array, Any]:
 
 def _coordinates(poses: Poses) -> Array:
     """(n, 7) positions and Euler parameters, Exudyn's coordinates of a rigid body."""
-    return np.hstack([poses.place, Rotation.from_matrix(poses.axes).as_quat(scalar_first=True)])
+    return np.hstack([poses.position, Rotation.from_matrix(poses.axes).as_quat(scalar_first=True)])
 
 
 def _basis(p: Array) -> Array:

@@ -43,7 +43,7 @@ class HingedSegments:
         strain: (n,) the strain that the joint allows (in ``core.blade``'s order of strains).
         stiffness: (n,) of each joint alone, N/m or N m.
         coupling: (n, n) sparse, stiffness between different joints of a hinge; no entries on the diagonal.
-        offset, turn: (n, 3) m, (n, 3, 3) from the previous link; for the first, from the hub's axes, coned.
+        offset, rotation: (n, 3) m, (n, 3, 3) from the previous link; for the first, from the hub's axes, coned.
         segment: (e,) the link that carries the segment, the last of each hinge.
         mass, centre, inertia: (e,), (e, 3), (e, 3, 3) of the segments, in their links' axes; inertia about the centre.
         ends: (k+1,) arc lengths of the ends of the k elements, m.
@@ -55,7 +55,7 @@ class HingedSegments:
     stiffness: Array
     coupling: sparse.csr_array
     offset: Array
-    turn: Array
+    rotation: Array
     segment: Index
     mass: Array
     centre: Array
@@ -77,27 +77,27 @@ def hinge_segments(blade: Blade, elements: int, omega: float = 0.0) -> HingedSeg
     """A blade at ``omega`` (rad/s) as a tree of at least ``elements`` elements, after the root joint if not clamped."""
     ends = _ends(blade, elements, omega)
     hinges = _hinges(blade, ends)
-    place, axes = _frames(blade, hinges)
+    position, axes = _frames(blade, hinges)
     soft = np.isfinite(np.diagonal(blade.stiffness[0]))
-    slide, turn = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
-    hinge = np.array([*slide, *turn, *turn[-2::-1], *slide[::-1]])
+    slide, rotations = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
+    hinge = np.array([*slide, *rotations, *rotations[-2::-1], *slide[::-1]])
     stiffness = list(_stiffness(blade, ends, axes, hinge))
     joints = [hinge] * (len(ends) - 1)
-    reach = (np.swapaxes(axes, 1, 2) @ (_frames(blade, ends[1:])[0] - place)[..., None])[..., 0]
+    reach = (np.swapaxes(axes, 1, 2) @ (_frames(blade, ends[1:])[0] - position)[..., None])[..., 0]
     if not clamped(blade):
         free = np.flatnonzero(np.isfinite(blade.root))  # axes in ``JOINT``'s order, as strains are
         joints, stiffness = [free, *joints], [np.diag(blade.root[free]), *stiffness]
         hinges, reach = np.append(0.0, hinges), np.concatenate([np.zeros((1, 3)), reach])
-        place = np.concatenate([_frames(blade, hinges[:1])[0], place])
+        position = np.concatenate([_frames(blade, hinges[:1])[0], position])
         axes = np.concatenate([root_axes(blade)[None], axes])
     count = np.array([len(joint) for joint in joints])
     first = np.cumsum(count) - count
     n = int(count.sum())
-    before = np.swapaxes(np.concatenate([np.eye(3)[None], axes[:-1]]), 1, 2)
-    offset, joint_turn = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
-    offset[first] = (before @ np.diff(place, axis=0, prepend=0.0)[..., None])[..., 0]
-    joint_turn[first] = before @ axes
-    mass, centre, inertia = _segments(blade, hinges, place, axes)
+    to_previous = np.swapaxes(np.concatenate([np.eye(3)[None], axes[:-1]]), 1, 2)
+    offset, joint_rotation = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
+    offset[first] = (to_previous @ np.diff(position, axis=0, prepend=0.0)[..., None])[..., 0]
+    joint_rotation[first] = to_previous @ axes
+    mass, centre, inertia = _segments(blade, hinges, position, axes)
     full = sparse.csr_array(sparse.block_diag(stiffness))
     own: Array = full.diagonal().astype(float)
     coupling = full - sparse.diags_array(own)
@@ -107,7 +107,7 @@ def hinge_segments(blade: Blade, elements: int, omega: float = 0.0) -> HingedSeg
         stiffness=own,
         coupling=coupling,
         offset=offset,
-        turn=joint_turn,
+        rotation=joint_rotation,
         segment=first + count - 1,
         mass=mass,
         centre=centre,
@@ -129,14 +129,14 @@ def _ends(blade: Blade, elements: int, omega: float) -> Array:
     tension = omega**2 * level * mass @ (blade.hub_radius + level * np.append(s, blade.length))
     bend = np.diagonal(blade.stiffness[0])[[BEND_Y, BEND_Z]].min()
     layer = LAYER * np.sqrt(bend / tension) / blade.length
-    even = np.linspace(0.0, 1.0, elements + 1)
-    return blade.length * np.append(layer * np.expm1(even[:-1] * np.log1p(1.0 / layer)), 1.0)
+    equal = np.linspace(0.0, 1.0, elements + 1)
+    return blade.length * np.append(layer * np.expm1(equal[:-1] * np.log1p(1.0 / layer)), 1.0)
 
 
 def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
     """Positions (k, 3) and axes (k, 3, 3) of sections, in the hub's axes."""
     at = line(blade, s[:, None])
-    return at.place[:, 0], at.axes[:, 0]
+    return at.position[:, 0], at.axes[:, 0]
 
 
 def _pieces(blade: Blade, ends: Array) -> Array:
@@ -186,7 +186,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     return out + apart * np.diagonal(out, axis1=1, axis2=2)[:, None, :]
 
 
-def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[Array, Array, Array]:
+def _segments(blade: Blade, hinges: Array, position: Array, axes: Array) -> tuple[Array, Array, Array]:
     """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of the segment from each hinge to the next, or to the tip."""
     ends = np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]])
     s, weight = (part.ravel() for part in gauss.between(ends, 3))
@@ -195,7 +195,7 @@ def _segments(blade: Blade, hinges: Array, place: Array, axes: Array) -> tuple[A
     hinge = np.searchsorted(hinges, s) - 1
     centres, section = _frames(blade, s)
     to_hinge = np.swapaxes(axes[hinge], 1, 2)
-    to_hinge_axes, lever = to_hinge @ section, skew((to_hinge @ (centres - place[hinge])[..., None])[..., 0])
+    to_hinge_axes, lever = to_hinge @ section, skew((to_hinge @ (centres - position[hinge])[..., None])[..., 0])
     to_section_axes = np.swapaxes(to_hinge_axes, 1, 2)
     m = body[:, 0, 0]
     offset = to_hinge_axes @ -body[:, :3, 3:] @ to_section_axes  # momentum m (v + ω × c) makes the block -m [c]×

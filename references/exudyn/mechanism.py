@@ -179,7 +179,7 @@ def _steady_state(tree: Tree, made: System, q: Array) -> Array:
     """
     fixed = [tree.coordinate(m.coordinate) for m in tree.mechanism.motions]
     free = np.setdiff1d(np.arange(len(q)), fixed)
-    before = np.inf
+    last_change = np.inf
     for _ in range(60):
         force, gap, J = made.balance(q)
         force, J = force[free], J[free]
@@ -197,12 +197,12 @@ def _steady_state(tree: Tree, made: System, q: Array) -> Array:
         change = float(np.abs(step).max(initial=0.0))
         q = q.copy()
         q[free] += step * min(1.0, 0.3 / max(change, 0.3))
-        if change < 1e-12 or (change < 1e-9 and change > 0.3 * before):
-            rest = np.abs(null.T @ force).max(initial=0.0)
-            if rest <= 1e-7 * max(float(np.abs(force).max(initial=0.0)), float(np.abs(K).max()) * 1e-2):
+        if change < 1e-12 or (change < 1e-9 and change > 0.3 * last_change):
+            unbalanced = np.abs(null.T @ force).max(initial=0.0)
+            if unbalanced <= 1e-7 * max(float(np.abs(force).max(initial=0.0)), float(np.abs(K).max()) * 1e-2):
                 return q
             break
-        before = change
+        last_change = change
     raise CodeError("Exudyn finds no steady state near the guess: give a better guess")
 
 

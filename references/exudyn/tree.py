@@ -107,7 +107,7 @@ def _system(tree: HingedSegments, omega: float, hub: tuple[int, ...]) -> tuple[A
             nodeNumber=node,
             jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in (*hub, *tree.strain)],
             linkParents=np.arange(-1, n - 1),
-            jointTransformations=exu.Matrix3DList([*[np.eye(3)] * first, *tree.turn]),
+            jointTransformations=exu.Matrix3DList([*[np.eye(3)] * first, *tree.rotation]),
             jointOffsets=exu.Vector3DList([*[np.zeros(3)] * first, *tree.offset]),
             linkMasses=mass,
             linkCOMs=exu.Vector3DList(list(centre)),
@@ -172,7 +172,7 @@ def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
     axis, origin, where = np.zeros((n, 3)), np.zeros((n, 3)), np.zeros((n, 3))
     for k, strain in enumerate(tree.strain):
         p = p + R @ tree.offset[k]
-        R = R @ tree.turn[k]
+        R = R @ tree.rotation[k]
         axis[k], origin[k] = R[:, strain % 3], p
         if strain in SLIDE:
             p = p + axis[k] * q[k]

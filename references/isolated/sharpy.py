@@ -110,7 +110,7 @@ def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
     """The request for the script in SHARPy's environment; ``spans`` (e, 2) are the arc lengths of the elements' ends, m."""
     untwisted = replace(blade, twist=np.zeros_like(blade.twist))
     frame = sections.frames(untwisted, nodes(spans))
-    place, psi = frame[:, :3, 3], Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
+    position, psi = frame[:, :3, 3], Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
     length = np.diff(spans).ravel()
     at, weight = (np.concatenate(part) for part in zip(*(gauss(span, 3) for span in spans), strict=True))
     share = (weight / np.repeat(length, 3))[:, None, None]
@@ -119,13 +119,13 @@ def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
     stiffness = stiffness_at(blade, at)
     bending = np.diagonal(stiffness, axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]].max(1) / blade.length**2
     stiffness = np.where(np.isinf(stiffness), RIGID * bending[:, None, None], stiffness)
-    chord = np.linalg.norm(np.diff(place[::2], axis=0), axis=1)
+    chord = np.linalg.norm(np.diff(position[::2], axis=0), axis=1)
     longer = (length / chord)[:, None, None]  # SHARPy measures an element by its chord
-    back = np.swapaxes(twist, 1, 2)
-    compliance = longer * (share * (twist @ np.linalg.inv(stiffness) @ back)).reshape(-1, 3, 6, 6).sum(1)
-    mass = longer * (share * (twist @ mass_at(blade, at) @ back)).reshape(-1, 3, 6, 6).sum(1)
+    transposed_twist = np.swapaxes(twist, 1, 2)
+    compliance = longer * (share * (twist @ np.linalg.inv(stiffness) @ transposed_twist)).reshape(-1, 3, 6, 6).sum(1)
+    mass = longer * (share * (twist @ mass_at(blade, at) @ transposed_twist)).reshape(-1, 3, 6, 6).sum(1)
     arrays = {
-        "nodes": place,
+        "nodes": position,
         "turn": np.stack([psi[:-2:2], psi[2::2], psi[1::2]], axis=1),
         "stiffness": np.linalg.inv(compliance),
         "mass": mass,

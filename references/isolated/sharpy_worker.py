@@ -60,7 +60,7 @@ def solve(request):
 
 def newton(xbeam, beam, state, omega, start, size):
     """Coordinates of the equilibrium; None if Newton's method does not converge."""
-    q, before = start.copy(), np.inf
+    q, last = start.copy(), np.inf
     for _ in range(STEPS):
         _, _, K, Q = assembled(xbeam, beam, state, omega, q)
         change = -np.linalg.solve(K, Q)
@@ -68,9 +68,9 @@ def newton(xbeam, beam, state, omega, start, size):
         largest = np.abs(change / size).max()
         if not largest < 1.0:
             return None
-        if largest < SMALL or 0.1 * before < largest < 1e-7:  # converged, or down to rounding
+        if largest < SMALL or 0.1 * last < largest < 1e-7:  # converged, or down to rounding
             return q
-        before = largest
+        last = largest
     return None
 
 

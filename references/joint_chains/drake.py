@@ -102,8 +102,8 @@ def build(chain: Mesh) -> DrakeChain:
     link = made.AddRigidBody("hub", nothing)
     hub = made.AddJoint(tree.RevoluteJoint("hub", made.world_frame(), link.body_frame(), [0, 0, 1]))
     joints, links = [], []
-    for k, (place, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
-        frame = made.AddFrame(tree.FixedOffsetFrame(f"{k}", link.body_frame(), pose(place)))
+    for k, (frame_pose, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
+        frame = made.AddFrame(tree.FixedOffsetFrame(f"{k}", link.body_frame(), pose(frame_pose)))
         for i, axis in enumerate(np.tile(np.eye(3), (2, 1))):
             link = made.AddRigidBody(f"{k} {i}", _inertia(lump) if i == 5 else nothing)
             kind = tree.PrismaticJoint if i < 3 else tree.RevoluteJoint

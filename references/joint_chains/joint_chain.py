@@ -125,11 +125,11 @@ class JointChain(BladeAdapter):
         chain = discretize(blade, elements, "half_end", "body_fixed")
         body = self.build(chain)
         elastic = cast(Array, block_diag(*chain.beams.stiffness))
-        q, before = steady_coordinates(body, elastic, omega, chain)
+        q, previous_stiffness = steady_coordinates(body, elastic, omega, chain)
         _, stiffness, gyroscopic = body.inertial(q, omega)
         mass = body.mass(q)
         frequencies, vectors = gyroscopic_modes(mass, gyroscopic, elastic + stiffness, count)
-        error = rounding(mass, elastic, stiffness, before, frequencies, vectors)
+        error = rounding(mass, elastic, stiffness, previous_stiffness, frequencies, vectors)
         at_nodes = np.concatenate([np.zeros((1, 4, vectors.shape[1])), body.jacobian(q) @ vectors])
         shapes, _ = curve.at(divide(blade, elements), at_nodes, blade.kinks, STATIONS * blade.length)
         return Modes(omega, frequencies, shapes.transpose(2, 0, 1), chain.elements, rounding=error)
@@ -143,13 +143,18 @@ class JointChain(BladeAdapter):
 
 
 def rounding(
-    mass: Array, elastic: Array, stiffness: Array, before: Array, frequencies: Array, vectors: NDArray[np.complex128]
+    mass: Array,
+    elastic: Array,
+    stiffness: Array,
+    previous_stiffness: Array,
+    frequencies: Array,
+    vectors: NDArray[np.complex128],
 ) -> Array:
     """(m,) relative error of the frequencies due to rounding of K and M: δω/ω = x*(δK − ω²δM)x / 2x*Kx.
 
     δK is bounded by the asymmetry of the code's derivative and by its change over a step of the size of rounding.
     """
-    error = np.maximum(np.abs(stiffness - before), np.abs(stiffness - stiffness.T))
+    error = np.maximum(np.abs(stiffness - previous_stiffness), np.abs(stiffness - stiffness.T))
     error += EPS * (np.abs(elastic) + np.abs(stiffness))
     size = np.abs(vectors)
     energy = np.einsum("im,ij,jm->m", vectors.conj(), elastic + stiffness, vectors).real
@@ -163,8 +168,8 @@ def places(chain: Mesh) -> Array:
     A body's frame is that of the end of the element before it, and its joints are along its axes. At a kink the next
     element begins rotated relative to it.
     """
-    before = np.concatenate([chain.nodes[:1], sp.inverse(chain.corner[:-1])])
-    return before @ chain.beams.undeformed
+    ends_a = np.concatenate([chain.nodes[:1], sp.inverse(chain.corner[:-1])])
+    return ends_a @ chain.beams.undeformed
 
 
 def bodies(chain: Mesh) -> Array:
@@ -244,7 +249,7 @@ def _newton(model: ChainModel, elastic: Array, omega: float, q: Array, chain: Me
     """
     size = np.tile(np.repeat([chain.scale, 1.0], 3), len(q) // 6)
     lever = np.tile(np.repeat([1.0, float(np.linalg.norm(chain.nodes[-1, :3, 3]))], 3), len(q) // 6)
-    before = np.inf
+    last_energy = np.inf
     for _ in range(STEPS):
         force, stiffness, _ = model.inertial(q, omega)
         residual = force + elastic @ q
@@ -257,8 +262,8 @@ def _newton(model: ChainModel, elastic: Array, omega: float, q: Array, chain: Me
         q = q + step
         unsure = EPS * (np.abs(force / lever).max() * lever + np.abs(elastic) @ np.abs(q))
         energy, rounding = abs(float(step @ residual)), float(np.sum(unsure**2 / np.diagonal(elastic)))
-        stalled = energy > MIN_REDUCTION * before  # else the bound is not reached yet: rounding may be much less
+        stalled = energy > MIN_REDUCTION * last_energy  # else the bound is not reached yet: rounding may be much less
         if energy <= CONVERGED_FACTOR * rounding or (stalled and energy <= STALL_FACTOR * rounding):
             return q, stiffness
-        before = energy
+        last_energy = energy
     return None

@@ -122,10 +122,10 @@ def build(chain: Mesh) -> MujocoChain:
     spec.compiler.degree = False
     body = spec.worldbody.add_body(name="hub", mass=1.0, inertia=np.ones(3))
     body.add_joint(type=mujoco.mjtJoint.mjJNT_HINGE, axis=[0, 0, 1])
-    for place in places(chain):
+    for pose in places(chain):
         quaternion = np.zeros(4)
-        mujoco.mju_mat2Quat(quaternion, place[:3, :3].ravel())
-        body = body.add_body(pos=place[:3, 3], quat=quaternion, mass=1.0, inertia=np.ones(3))
+        mujoco.mju_mat2Quat(quaternion, pose[:3, :3].ravel())
+        body = body.add_body(pos=pose[:3, 3], quat=quaternion, mass=1.0, inertia=np.ones(3))
         for kind in (mujoco.mjtJoint.mjJNT_SLIDE, mujoco.mjtJoint.mjJNT_HINGE):
             for axis in np.eye(3):
                 body.add_joint(type=kind, axis=axis)

@@ -39,8 +39,8 @@ class PinocchioChain:
 
     def inertia(self) -> Array:
         """(6, 6): from Pinocchio's composite rigid bodies."""
-        pin, rest = _pinocchio(), np.zeros(self.model.nq)
-        pin.ccrba(self.model, self.data, rest, np.zeros(self.model.nv))
+        pin, undeformed = _pinocchio(), np.zeros(self.model.nq)
+        pin.ccrba(self.model, self.data, undeformed, np.zeros(self.model.nv))
         about_centre = np.array(self.data.Ig.matrix())
         x, y, z = self.data.com[0]
         to_hub = np.eye(6)
@@ -90,10 +90,10 @@ def pinocchio_model(chain: Mesh) -> Any:
     model.gravity.setZero()
     here = pin.SE3.Identity()
     link = model.addJoint(0, pin.JointModelRZ(), here, "hub")
-    for k, (place, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
-        link = model.addJoint(link, pin.JointModelTranslation(), pin.SE3(place), f"{k} x y z")
-        for axis, turn in (("x", pin.JointModelRX), ("y", pin.JointModelRY), ("z", pin.JointModelRZ)):
-            link = model.addJoint(link, turn(), here, f"{k} about {axis}")
+    for k, (pose, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
+        link = model.addJoint(link, pin.JointModelTranslation(), pin.SE3(pose), f"{k} x y z")
+        for axis, kind in (("x", pin.JointModelRX), ("y", pin.JointModelRY), ("z", pin.JointModelRZ)):
+            link = model.addJoint(link, kind(), here, f"{k} about {axis}")
         model.appendBodyToJoint(link, pin.Inertia.FromDynamicParameters(_parameters(lump)), here)
     return model
 

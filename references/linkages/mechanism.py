@@ -157,7 +157,7 @@ def _steady_state(plant: Plant, q: Array, free: Index) -> Array:
     Raises:
         CodeError: it does not converge.
     """
-    q, before = q.copy(), np.inf
+    q, last_change = q.copy(), np.inf
     for _ in range(100):
         here = plant.at(q)
         J, force = here.J[:, free], here.force[free]
@@ -170,10 +170,10 @@ def _steady_state(plant: Plant, q: Array, free: Index) -> Array:
             step = close - null @ _least(null.T @ K @ null, null.T @ (force + K @ close))
         change = float(np.abs(step).max(initial=0.0))
         q[free] += step * min(1.0, 0.3 / max(change, 0.3))
-        if change < 1e-13 or (change < 1e-9 and change > 0.3 * before):
+        if change < 1e-13 or (change < 1e-9 and change > 0.3 * last_change):
             _check_balance(plant, q, free)
             return q
-        before = change
+        last_change = change
     raise CodeError("no steady state near the guess: give a better guess")
 
 

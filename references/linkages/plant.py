@@ -66,9 +66,9 @@ class Plant:
         self._model: Any = pinocchio.Model()
         self._model.gravity.linear = np.array(mechanism.gravity, dtype=float)
         for link in self.tree.links:
-            pose = pinocchio.SE3(link.place[:3, :3], link.place[:3, 3])
+            pose = pinocchio.SE3(link.frame[:3, :3], link.frame[:3, 3])
             kind = pinocchio.JointModelRevoluteUnaligned if link.turns else pinocchio.JointModelPrismaticUnaligned
-            self._model.addJoint(link.before + 1, kind(link.axis), pose, link.name)
+            self._model.addJoint(link.parent + 1, kind(link.axis), pose, link.name)
         for body in mechanism.bodies:
             link, pose = self.tree.bodies[body.name]
             if link >= 0 and body.inertia.any():
@@ -115,10 +115,12 @@ class Plant:
         first, second = len(self.tree.loops), len(self.tree.loops) + len(m.springs)
         for s, (a, b) in zip(m.springs, pairs[first:second], strict=True):
             line = distance(a, b)
-            rate, turn = line.gradient @ self.v, line.hessian.T @ self.v
+            rate, rate_of_gradient = line.gradient @ self.v, line.hessian.T @ self.v
             tension = s.stiffness * (line.value - s.free_length) + s.damping * rate
             force += tension * line.gradient
-            K += tension * line.hessian + np.outer(line.gradient, s.stiffness * line.gradient + s.damping * turn)
+            K += tension * line.hessian + np.outer(
+                line.gradient, s.stiffness * line.gradient + s.damping * rate_of_gradient
+            )
             C += s.damping * np.outer(line.gradient, line.gradient)
         for load, (axes, point) in zip(m.loads, pairs[second:], strict=True):
             pushed = axes.R @ np.asarray(load.force, float)  # its axes rotate by prescribed coordinates only

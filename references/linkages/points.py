@@ -52,16 +52,16 @@ def frames(pin: Any, model: Any, data: Any, q: Array, ids: Sequence[int]) -> lis
     for k, unit in enumerate(np.eye(n)):
         pin.computeJointJacobiansTimeVariation(model, data, q, unit)
         pin.updateFramePlacements(model, data)
-        for place, i in enumerate(ids):
-            slopes[k, place] = np.reshape(pin.getFrameJacobianTimeVariation(model, data, i, axes), (6, n))
+        for column, i in enumerate(ids):
+            slopes[k, column] = np.reshape(pin.getFrameJacobianTimeVariation(model, data, i, axes), (6, n))
     pin.computeJointJacobians(model, data, q)
     pin.updateFramePlacements(model, data)
     out = []
-    for place, i in enumerate(ids):
+    for column, i in enumerate(ids):
         J = np.reshape(
             pin.getFrameJacobian(model, data, i, axes), (6, n)
         ).copy()  # with one coordinate it is one-dimensional
-        pose, dJ = data.oMf[i], slopes[:, place]
+        pose, dJ = data.oMf[i], slopes[:, column]
         out.append(Frame(np.array(pose.translation), np.array(pose.rotation), J[:3], J[3:], dJ[:, :3], dJ[:, 3:]))
     return out
 

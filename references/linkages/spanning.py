@@ -35,15 +35,15 @@ class Link:
 
     Attributes:
         name: of the coordinate, e.g. ``flap.rz``.
-        before: index of its parent link, −1 for the ground.
-        place: (4, 4) pose of its axes in that link.
+        parent: index of its parent link, −1 for the ground.
+        frame: (4, 4) pose of its axes in that link.
         axis: (3,) unit vector along or about which it moves; reversed if the joint is traversed from child to parent.
         turns: whether it rotates.
     """
 
     name: str
-    before: int
-    place: Array
+    parent: int
+    frame: Array
     axis: Array
     turns: bool
 
@@ -100,21 +100,21 @@ def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops:
     while ahead:
         here = ahead.pop()
         order.append(here)
-        ahead += [k for k, link in reversed(list(enumerate(links))) if link.before == here]
-    place = {old: new for new, old in enumerate(order, -1)}
-    ordered = tuple(replace(links[old], before=place[links[old].before]) for old in order[1:])
-    return Spanning(ordered, {name: (place[link], pose) for name, (link, pose) in bodies.items()}, loops)
+        ahead += [k for k, link in reversed(list(enumerate(links))) if link.parent == here]
+    renumbered = {old: new for new, old in enumerate(order, -1)}
+    ordered = tuple(replace(links[old], parent=renumbered[links[old].parent]) for old in order[1:])
+    return Spanning(ordered, {name: (renumbered[link], pose) for name, (link, pose) in bodies.items()}, loops)
 
 
 def _lay(joint: Joint, links: list[Link], bodies: dict[str, tuple[int, Array]]) -> None:
     """Add a joint's links from the end in the tree, and place the body at its other end."""
     forward = joint.parent in bodies
     near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
-    before, pose = bodies[joint.parent if forward else joint.child]
-    place = pose @ near
+    parent, pose = bodies[joint.parent if forward else joint.child]
+    frame = pose @ near
     steps = AXES[joint.kind].split()
     for step in steps if forward else steps[::-1]:
         axis = np.eye(3)["xyz".index(step[-1])]
-        links.append(Link(f"{joint.name}.{step}", before, place, axis if forward else -axis, step[0] == "r"))
-        before, place = len(links) - 1, np.eye(4)
-    bodies[joint.child if forward else joint.parent] = before, place @ np.linalg.inv(far)
+        links.append(Link(f"{joint.name}.{step}", parent, frame, axis if forward else -axis, step[0] == "r"))
+        parent, frame = len(links) - 1, np.eye(4)
+    bodies[joint.child if forward else joint.parent] = parent, frame @ np.linalg.inv(far)

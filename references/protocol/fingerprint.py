@@ -34,9 +34,9 @@ class Fingerprint:
     start: float = 0.0
 
 
-def rigid_motions(place: Array) -> Array:
-    """(…, 3, 6) displacements of points ``place`` (…, 3) by unit motions along, then about, x, y, z of the hub."""
-    x, y, z = np.moveaxis(place, -1, 0)
+def rigid_motions(position: Array) -> Array:
+    """(…, 3, 6) displacements of points ``position`` (…, 3) by unit motions along, then about, x, y, z of the hub."""
+    x, y, z = np.moveaxis(position, -1, 0)
     none, one = np.zeros_like(x), np.ones_like(x)
     rows = ((one, none, none, none, z, -y), (none, one, none, -z, none, x), (none, none, one, y, -x, none))
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
@@ -50,8 +50,8 @@ def of_matrix(inertia: ArrayLike, elements: int, start: float = 0.0) -> Fingerpr
     )
 
 
-def of_points(mass: Array, place: Array, elements: int) -> Fingerprint:
+def of_points(mass: Array, position: Array, elements: int) -> Fingerprint:
     """The fingerprint of masses (n,) at points (n, 3)."""
-    first = mass @ place
-    inertia = float(mass @ (place[:, :2] ** 2).sum(axis=1))
+    first = mass @ position
+    inertia = float(mass @ (position[:, :2] ** 2).sum(axis=1))
     return Fingerprint(float(mass.sum()), (float(first[0]), float(first[1]), float(first[2])), inertia, elements)

@@ -146,9 +146,9 @@ def _element_masses(path: Path) -> Fingerprint:
     length, start, *properties = compute_element_props(main.n_elements, np.asarray(main.el_loc), table, hub)
     length, start = length * main.radius, start * main.radius
     mass = properties[5] * length
-    place = np.zeros((len(mass), 3))
-    place[:, 0] = start + length / 2
-    whole = of_points(mass, place, len(mass))
+    position = np.zeros((len(mass), 3))
+    position[:, 0] = start + length / 2
+    whole = of_points(mass, position, len(mass))
     return replace(whole, rotor_inertia=whole.rotor_inertia + float(mass @ length**2) / 12)
 
 
@@ -181,7 +181,7 @@ def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> t
         CodeError: if an eigenvalue is not positive (pyBModes then reports a zero frequency).
     """
     asked = min(count + SPARE, most)
-    before = np.zeros(0)
+    last_frequencies = np.zeros(0)
     while True:
         spectrum = rotor.run(asked, check_model=False)
         if not (spectrum.frequencies > 0).all():
@@ -190,11 +190,12 @@ def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> t
         moving = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
         frequencies = 2 * np.pi * np.array([f for f, _ in moving])
         confirmed = not doubted or (
-            len(before) == len(frequencies) and np.allclose(before, frequencies, rtol=AGREEMENT, atol=0.0)
+            len(last_frequencies) == len(frequencies)
+            and np.allclose(last_frequencies, frequencies, rtol=AGREEMENT, atol=0.0)
         )
         if (len(moving) == count and confirmed) or asked == most:
             break
-        before, asked = frequencies, min(2 * asked, most)
+        last_frequencies, asked = frequencies, min(2 * asked, most)
     return frequencies, _at_stations([shape for _, shape in moving], blade)
 
 

@@ -208,17 +208,17 @@ def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
     fem = skfem()
     load = fem.LinearForm(forms.load)
     steady = parts[0].steady
-    torsion, turn = bilinear(forms.spring, steady, k=at.GJ), steady.zeros()
+    torsion, torsion_angle = bilinear(forms.spring, steady, k=at.GJ), steady.zeros()
     for _ in range(NEWTON):
-        K, f = torsion, -torsion @ turn
+        K, f = torsion, -torsion @ torsion_angle
         for p in parts:
-            J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
+            J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(torsion_angle))
             K = K - omega**2 * bilinear(forms.bedding, p.steady, k=J_yy - J_zz)
             f = f + omega**2 * load.assemble(p.steady, k=J_yz)
         step = fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
-        turn = turn + step
+        torsion_angle = torsion_angle + step
         if np.abs(step).max() < 1e-8:  # the error of the next is its square
-            return turn
+            return torsion_angle
     raise CodeError(f"omega: {omega:g} rad/s: no steady twist of the sections in {NEWTON} steps; lower the speed")
 
 
@@ -226,8 +226,8 @@ def _matrices(blade: Blade, omega: float, parts: list[Part]) -> tuple[Any, Any, 
     """M, C, K of all coordinates about the steady state, in axes that rotate with the hub."""
     basis = parts[0].basis
     at = _sections(blade, basis)[1]
-    stretch, turn = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
-    U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, turn))
+    stretch, torsion_angle = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
+    U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, torsion_angle))
     if not (U.grad[0] > -1).all():
         raise CodeError(
             f"omega: {omega:g} rad/s: no steady stretch: centrifugal force exceeds axial stiffness; lower the speed"
@@ -238,7 +238,7 @@ def _matrices(blade: Blade, omega: float, parts: list[Part]) -> tuple[Any, Any, 
     K = bilinear(forms.elastic, basis, **stiffness, **steady)
     M = C = 0 * K
     for p in parts:
-        J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(turn))
+        J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(torsion_angle))
         inertia = {"mass": p.mass, "J_xx": p.I_x, "J_yy": J_yy, "J_zz": J_zz, "J_yz": J_yz}
         inertia["g"] = 1 + p.steady.interpolate(stretch).grad[0]
         M = M + bilinear(forms.inertia, p.basis, **inertia)

@@ -61,9 +61,9 @@ class ScikitFemReissner(BladeAdapter):
         """A reason if a mass matrix is not that of a rigid body, or all strains are rigid."""
         for name, mass in (("mass", blade.mass), ("tip_mass", blade.tip_mass)):
             body = moments(mass)
-            again = np.einsum("ail,bij,...jl->...ab", forms.MOVE, forms.MOVE, body)
+            of_particles = np.einsum("ail,bij,...jl->...ab", forms.MOVE, forms.MOVE, body)
             scale = np.sqrt(np.abs(np.diagonal(mass, axis1=-2, axis2=-1)))
-            if (np.abs(again - mass) > RIGID_BODY * scale[..., None] * scale[..., None, :]).any():
+            if (np.abs(of_particles - mass) > RIGID_BODY * scale[..., None] * scale[..., None, :]).any():
                 return (
                     f"{name}: not the matrix of a rigid body to {RIGID_BODY:g}: the weak form integrates over particles"
                 )
@@ -100,8 +100,8 @@ class ScikitFemReissner(BladeAdapter):
         own = np.zeros(beam.basis.N, dtype=np.intp)
         for dofs in (beam.basis.nodal_dofs, beam.basis.interior_dofs):
             own[dofs] = np.arange(6)[:, None]
-        place = line(blade, s[:, None]).place[:, 0]
-        motions = np.concatenate([rigid_motions(place), np.broadcast_to(np.eye(6)[3:], (len(s), 3, 6))], axis=1)
+        position = line(blade, s[:, None]).position[:, 0]
+        motions = np.concatenate([rigid_motions(position), np.broadcast_to(np.eye(6)[3:], (len(s), 3, 6))], axis=1)
         q = motions[np.arange(len(s)), own]
         return of_matrix(q.T @ (M @ q), beam.elements)
 

@@ -28,13 +28,13 @@ class Part:
 
     Attributes:
         basis: of the displacements and rotations, at these points.
-        place: (…, 3) m, undeformed.
+        position: (…, 3) m, undeformed.
         axes: (…, 3, 3) the section's axes, undeformed.
         moments: (…, 4, 4) ∫ Y Yᵀ dm in the section's axes; see ``theories.reference_line.moments``.
     """
 
     basis: Any
-    place: Array
+    position: Array
     axes: Array
     moments: Array
 
@@ -80,7 +80,7 @@ class State:
 
     Attributes:
         slope, axes, curvature: (e, q, …) at the strains' points; curvature is the change from the undeformed one.
-        place, part_axes: per part (e, q, 3) and (e, q, 3, 3).
+        position, part_axes: per part (e, q, 3) and (e, q, 3, 3).
         force: coefficients of the section forces.
         root: (free,) the root's displacements and rotations, in its axes, zero elsewhere.
     """
@@ -88,7 +88,7 @@ class State:
     slope: Array
     axes: Array
     curvature: Array
-    place: tuple[Array, ...]
+    position: tuple[Array, ...]
     part_axes: tuple[Array, ...]
     force: Array
     root: Array
@@ -112,10 +112,10 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
     root = np.array(basis.get_dofs("root").flatten())
     free_root = np.flatnonzero(np.isfinite(blade.root))
     inner = np.setdiff1d(np.arange(basis.N), root)
-    turn = np.kron(np.eye(2), root_axes(blade))[:, free_root]
+    to_root_axes = np.kron(np.eye(2), root_axes(blade))[:, free_root]
     count = len(free_root) + len(inner)
     to_free = sp.lil_array((basis.N, count))
-    to_free[root, : len(free_root)] = turn
+    to_free[root, : len(free_root)] = to_root_axes
     to_free[inner, np.arange(len(free_root), count)] = 1.0
     springs = np.zeros(count)
     springs[: len(free_root)] = blade.root[free_root]
@@ -148,7 +148,7 @@ def _part(blade: Blade, basis: Any, lump: Array | None) -> Part:
     s = np.array(basis.global_coordinates())[0]
     at_rest = line(blade, s)
     mass = mass_at(blade, s.ravel()).reshape(*s.shape, 6, 6) if lump is None else lump[None, None]
-    return Part(basis, at_rest.place, at_rest.axes, moments(mass))
+    return Part(basis, at_rest.position, at_rest.axes, moments(mass))
 
 
 def at_rest(beam: Beam) -> State:
@@ -158,7 +158,7 @@ def at_rest(beam: Beam) -> State:
         slope=beam.slope,
         axes=beam.axes,
         curvature=np.zeros(shape),
-        place=tuple(part.place for part in beam.parts),
+        position=tuple(part.position for part in beam.parts),
         part_axes=tuple(part.axes for part in beam.parts),
         force=np.zeros(beam.forces.N),
         root=np.zeros(len(beam.springs)),
@@ -170,17 +170,17 @@ def after_step(beam: Beam, state: State, step: Array, force: Array) -> State:
     q = beam.to_free @ step
     u = beam.basis.interpolate(q)
     w_s, phi, phi_s = (np.moveaxis(f, 0, -1) for f in (u.grad[:3, 0], np.asarray(u)[3:], u.grad[3:, 0]))
-    back = np.swapaxes(state.axes, -1, -2)
-    place, part_axes = [], []
-    for part, at, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
+    to_section = np.swapaxes(state.axes, -1, -2)
+    position, part_axes = [], []
+    for part, at, axes in zip(beam.parts, state.position, state.part_axes, strict=True):
         value = np.moveaxis(np.asarray(part.basis.interpolate(q)), 0, -1)
-        place.append(at + value[..., :3])
+        position.append(at + value[..., :3])
         part_axes.append(forms.exponential(value[..., 3:]) @ axes)
     return State(
         slope=state.slope + w_s,
         axes=forms.exponential(phi) @ state.axes,
-        curvature=state.curvature + (back @ forms.bending_rate(phi, phi_s)[..., None])[..., 0],
-        place=tuple(place),
+        curvature=state.curvature + (to_section @ forms.bending_rate(phi, phi_s)[..., None])[..., 0],
+        position=tuple(position),
         part_axes=tuple(part_axes),
         force=force,
         root=state.root + np.where(np.arange(len(step)) < np.isfinite(beam.blade.root).sum(), step, 0.0),
@@ -189,9 +189,9 @@ def after_step(beam: Beam, state: State, step: Array, force: Array) -> State:
 
 def spatial(part: Part, axes: Array) -> Array:
     """(e, q, 4, 4) the moments of the mass in the hub's axes."""
-    turn = np.zeros((*axes.shape[:-2], 4, 4))
-    turn[..., :3, :3], turn[..., 3, 3] = axes, 1.0
-    return turn @ part.moments @ np.swapaxes(turn, -1, -2)
+    rotation = np.zeros((*axes.shape[:-2], 4, 4))
+    rotation[..., :3, :3], rotation[..., 3, 3] = axes, 1.0
+    return rotation @ part.moments @ np.swapaxes(rotation, -1, -2)
 
 
 def strain_rate(beam: Beam, state: State) -> Any:
@@ -205,8 +205,8 @@ def stiffening(beam: Beam, state: State, omega: float) -> Any:
     force = np.moveaxis(np.asarray(beam.forces.interpolate(state.force)), 0, -1)
     on = forms.for_fem(forms.geometric(state.slope, state.axes, force), 2)
     K = bilinear(forms.quadratic_local, beam.basis, on=on)
-    for part, place, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
-        on = forms.for_fem(forms.centrifugal(place, spatial(part, axes)), 2)
+    for part, position, axes in zip(beam.parts, state.position, state.part_axes, strict=True):
+        on = forms.for_fem(forms.centrifugal(position, spatial(part, axes)), 2)
         K = K + omega**2 * bilinear(forms.quadratic, part.basis, on=on)
     return K
 
@@ -215,8 +215,8 @@ def centrifugal_force(beam: Beam, state: State, omega: float) -> Array:
     """Centrifugal force on all coordinates."""
     fem = skfem()
     force = np.zeros(beam.basis.N)
-    for part, place, axes in zip(beam.parts, state.place, state.part_axes, strict=True):
-        on = forms.for_fem(forms.centrifugal_force(place, spatial(part, axes)), 1)
+    for part, position, axes in zip(beam.parts, state.position, state.part_axes, strict=True):
+        on = forms.for_fem(forms.centrifugal_force(position, spatial(part, axes)), 1)
         force = force + omega**2 * fem.LinearForm(forms.linear).assemble(part.basis, on=on)
     return force
 
@@ -224,5 +224,5 @@ def centrifugal_force(beam: Beam, state: State, omega: float) -> Array:
 def strain(beam: Beam, state: State) -> Array:
     """Strains Γ and κ, (e, q, 6)."""
     gamma = np.swapaxes(state.axes, -1, -2) @ state.slope[..., None]
-    rest = np.swapaxes(beam.axes, -1, -2) @ beam.slope[..., None]
-    return np.concatenate([(gamma - rest)[..., 0], state.curvature], axis=-1)
+    undeformed = np.swapaxes(beam.axes, -1, -2) @ beam.slope[..., None]
+    return np.concatenate([(gamma - undeformed)[..., 0], state.curvature], axis=-1)

@@ -68,9 +68,9 @@ def for_fem(coefficients: Array, trailing: int) -> Array:
 def strain_rate(slope: Array, axes: Array) -> Array:
     """(e, q, 6, 12) the strain's first variation by z: ``Λᵀ (w′ + r′ × φ)`` and ``Λᵀ φ′``."""
     out = np.zeros((*slope.shape[:-1], 6, 12))
-    back = np.swapaxes(axes, -1, -2)
-    out[..., :3, 3:6] = back @ skew(slope)
-    out[..., :3, 6:9] = out[..., 3:, 9:] = back
+    to_section = np.swapaxes(axes, -1, -2)
+    out[..., :3, 3:6] = to_section @ skew(slope)
+    out[..., :3, 6:9] = out[..., 3:, 9:] = to_section
     return out
 
 
@@ -97,24 +97,24 @@ def gyroscopic(moments: Array) -> Array:
     return _sum(moments, GYROSCOPIC)
 
 
-def centrifugal_force(place: Array, moments: Array) -> Array:
+def centrifugal_force(position: Array, moments: Array) -> Array:
     """(e, q, 6) ``−∫ δx · Ω × (Ω × x) dm`` per unit of speed squared."""
-    return _sum(_position(place) @ moments, FORCE)
+    return _sum(_position(position) @ moments, FORCE)
 
 
-def centrifugal(place: Array, moments: Array) -> Array:
+def centrifugal(position: Array, moments: Array) -> Array:
     """(e, q, 6, 6) minus the derivative of ``centrifugal_force`` by the motion, from first and second order of δx;
     symmetric."""
-    return -_sum(moments, CENTRIFUGAL) - _sum(_position(place) @ moments, FORCE_TWICE)
+    return -_sum(moments, CENTRIFUGAL) - _sum(_position(position) @ moments, FORCE_TWICE)
 
 
 def _sum(moments: Array, factors: Array) -> Array:
     return np.tensordot(moments, factors, ((-2, -1), (-2, -1)))
 
 
-def _position(place: Array) -> Array:
+def _position(position: Array) -> Array:
     """(…, 3, 4) F with ``x = F (y, 1)``."""
-    return np.concatenate([np.broadcast_to(np.eye(3), (*place.shape, 3)), place[..., None]], axis=-1)
+    return np.concatenate([np.broadcast_to(np.eye(3), (*position.shape, 3)), position[..., None]], axis=-1)
 
 
 def exponential(phi: Array) -> Array:

@@ -86,13 +86,13 @@ def modes(
     steps += ["*FREQUENCY", str(count), "*NODE PRINT,NSET=ALL", "U", "*END STEP"]
     with run([*deck(places, nodes, material, bricks.axes), *steps]) as folder:
         frequencies, u = _printed((folder / "blade.dat").read_text(), omega)
-    even = np.ones(len(nodes))
+    weights = np.ones(len(nodes))
     if points is None:
-        shapes = mean_motions(nodes, even, u)
+        shapes = mean_motions(nodes, weights, u)
     else:
         layers = places[:: (len(places) - 1) // (len(STATIONS) - 1)]
         sections = [(layer[layer >= 0], point) for layer, point in zip(layers, points, strict=True)]
-        shapes = means(nodes, even, u, sections)
+        shapes = means(nodes, weights, u, sections)
     return Modes(omega, frequencies, shapes, bricks.counts[0])
 
 
@@ -172,8 +172,8 @@ def _sections(first: Index, material: Material | Orthotropic, axes: Array) -> li
     if isinstance(material, Material) or not len(axes):
         return ["*SOLID SECTION,ELSET=ALL,MATERIAL=SOLID"]
     lines = []
-    for n, turn in enumerate(axes[1::2] @ material.axes):
-        a, b = (",".join(f"{v:.12g}" for v in turn[:, k]) for k in (0, 1))
+    for n, axes_of_layer in enumerate(axes[1::2] @ material.axes):
+        a, b = (",".join(f"{v:.12g}" for v in axes_of_layer[:, k]) for k in (0, 1))
         own = np.flatnonzero(first[:, 0] == 2 * n) + 1
         lines += [f"*ORIENTATION,NAME=O{n},SYSTEM=RECTANGULAR", f"{a},{b}", f"*ELSET,ELSET=E{n}", *map(str, own)]
         lines += [f"*SOLID SECTION,ELSET=E{n},MATERIAL=SOLID,ORIENTATION=O{n}"]

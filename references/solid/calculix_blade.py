@@ -53,7 +53,7 @@ class Calculix(BladeAdapter):
         solid, _ = recognised(blade)
         if solid:
             bricks, root = with_root_forces(solid, bar.LAYERS * -(-elements // bar.LAYERS), ACROSS)
-            points = solid.place(STATIONS * solid.length)
+            points = solid.position(STATIONS * solid.length)
             return calculix.modes(bricks, solid.material, omega, count, root, points)
 
         def solved(bricks: Bricks, material: Orthotropic, count: int) -> Modes:

@@ -77,7 +77,7 @@ class CurvedSolid:
         along = 0.5 * (sine(a - b) + sine(a + b))
         return np.stack([along, 0.5 * (versine(a - b) + versine(a + b)), versine(b)], axis=-1)
 
-    def place(self, s: Array) -> Array:
+    def position(self, s: Array) -> Array:
         """(k, 3) the same points from the rotor's axis, m."""
         out = self.curve(s)
         out[:, 0] += self.hub_radius
@@ -94,8 +94,8 @@ class CurvedSolid:
         across = np.cross([1.0, 0.0, 0.0], t)
         sine = np.linalg.norm(across, axis=-1, keepdims=True)
         swing = Rotation.from_rotvec(across * np.where(sine > 0, np.arcsin(sine) / np.where(sine > 0, sine, 1.0), 1.0))
-        turn = Rotation.from_rotvec(np.outer(self.twisted(s), [1.0, 0.0, 0.0]))
-        return (swing * turn).as_matrix()
+        twist_rotation = Rotation.from_rotvec(np.outer(self.twisted(s), [1.0, 0.0, 0.0]))
+        return (swing * twist_rotation).as_matrix()
 
     def section(self, s: Array, eta: Array, zeta: Array) -> tuple[Array, Array]:
         """y and z, m, of points of sections in their axes; ``eta`` and ``zeta`` are shares of chord and thickness, 0 to 1."""
@@ -110,8 +110,8 @@ class CurvedSolid:
         at[::2], at[1::2] = s, 0.5 * (s[1:] + s[:-1])
         y, z = np.broadcast_arrays(*self.section(at[:, None, None], eta[:, None], zeta))
         local = np.stack([np.zeros_like(y), y, z], axis=-1)
-        axes, place = self.axes(at), self.place(at)
-        nodes = place[:, None, None] + np.einsum("sij,sabj->sabi", axes, local)
+        axes, position = self.axes(at), self.position(at)
+        nodes = position[:, None, None] + np.einsum("sij,sabj->sabi", axes, local)
         return Bricks(nodes[::2, ::2, ::2], axes, nodes)
 
 

@@ -83,9 +83,9 @@ def solid(bricks: Bricks, material: Material | Orthotropic) -> Solid:
     element = fem.ElementHex2()
     i, j, k = np.rint(fem.Basis(straight, element, intorder=2).doflocs).astype(int)
     lattice = bricks.lattice()
-    place: Any = np.ravel_multi_index((i, j, k), lattice.shape[:3])
+    number: Any = np.ravel_multi_index((i, j, k), lattice.shape[:3])
     order = np.empty(i.size, dtype=np.intp)
-    order[place] = np.arange(i.size)
+    order[number] = np.arange(i.size)
     mesh = fem.MeshHex2(np.ascontiguousarray(lattice[i, j, k].T), straight.t)
     along = int(np.abs(straight.mapping().DF(np.full((3, 1), 0.5))[0, :, 0, 0]).argmax())
     basis = fem.Basis(mesh, element, quadrature=_points(along))
@@ -93,12 +93,12 @@ def solid(bricks: Bricks, material: Material | Orthotropic) -> Solid:
     slopes = np.stack(gradients).transpose(2, 3, 0, 1)
     moduli = material.moduli
     if len(bricks.axes) and isinstance(material, Orthotropic):
-        own = np.repeat(bricks.axes.reshape(-1, 9), i.size // len(bricks.axes), axis=0)[place]
+        own = np.repeat(bricks.axes.reshape(-1, 9), i.size // len(bricks.axes), axis=0)[number]
         axes = np.stack([basis.interpolate(entry) for entry in own.T], axis=-1)
         moduli = rotated(moduli, axes.reshape(*axes.shape[:-1], 3, 3))
     moduli = np.broadcast_to(moduli, (*slopes.shape[:2], 3, 3, 3, 3))
     full, nodes = fem.Basis(mesh, element, intorder=4), lattice.reshape(-1, 3)
-    return Solid(full, order, nodes, material.density, moduli, place[basis.element_dofs.T], slopes, basis.dx)
+    return Solid(full, order, nodes, material.density, moduli, number[basis.element_dofs.T], slopes, basis.dx)
 
 
 def _points(along: int) -> tuple[Array, Array]:
@@ -242,12 +242,12 @@ def steady_displacements(s: Solid, omega: float, free: Any) -> tuple[Array, Any]
     Raises:
         CodeError: if no steady state is found.
     """
-    place = s.nodes.T.ravel()
+    position = s.nodes.T.ravel()
     if not omega:
-        return np.zeros_like(place), ss.csc_array(tangent(s))
+        return np.zeros_like(position), ss.csc_array(tangent(s))
     across = ss.kron(ss.diags_array([1.0, 1.0, 0.0]), omega**2 * mass(s), format="csr")
     for shares in STEPS:
-        u, K = np.zeros_like(place), None
+        u, K = np.zeros_like(position), None
         for share in shares:
             u, K = _balanced(s, share * across, free, u)
             if K is None:
@@ -271,17 +271,17 @@ def _balanced(s: Solid, across: Any, free: Any, u: Array) -> tuple[Array, Any]:
     the rotations of that step, as spurious tension, make a slender solid straighten slowly (D. Magisano, L. Leonetti and
     G. Garcea, Comput. Methods Appl. Mech. Eng. 313 (2017) 986). Both lead to the same state, whose stiffness is returned.
     """
-    place, stress, size = s.nodes.T.ravel(), None, np.inf
+    position, stress, size = s.nodes.T.ravel(), None, np.inf
     factor: Any = None
     for _ in range(NEWTON):
         if size > SETTLED:
             factor = factored(free.T @ ss.csc_array(tangent(s, u, stress) - across) @ free)
-        step = free @ factor.solve(free.T @ (across @ (place + u) - internal_force(s, u)))
+        step = free @ factor.solve(free.T @ (across @ (position + u) - internal_force(s, u)))
         stress, u = predicted(s, u, step), u + step
-        size = np.abs(step).max() / np.abs(place).max()
+        size = np.abs(step).max() / np.abs(position).max()
         if size <= 1e-10:
             return u, ss.csc_array(tangent(s, u) - across)
-        if not np.abs(u).max() < np.abs(place).max():
+        if not np.abs(u).max() < np.abs(position).max():
             break
     return u, None
 

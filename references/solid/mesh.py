@@ -89,10 +89,10 @@ def blade(
         edge: ratio of the thickness at the edges to that at mid-chord, parabolic between; 1 for a rectangle.
     """
     eta, zeta = (np.linspace(-1.0, 1.0, n + 1) for n in across)
-    half_chord, half_thick, turn = (np.broadcast_to(v, x.shape)[:, None, None] for v in (chord, thickness, twist))
+    half_chord, half_thick, angle = (np.broadcast_to(v, x.shape)[:, None, None] for v in (chord, thickness, twist))
     y = 0.5 * half_chord * eta[:, None]
     z = 0.5 * half_thick * zeta * (1.0 - (1.0 - edge) * eta[:, None] ** 2)
-    c, s = np.cos(turn), np.sin(turn)
+    c, s = np.cos(angle), np.sin(angle)
     y, z = c * y - s * z, s * y + c * z
     return Bricks(np.stack([np.broadcast_to(x[:, None, None], z.shape), y, z], axis=-1))
 

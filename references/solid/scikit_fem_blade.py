@@ -97,9 +97,9 @@ def modes(solid: CurvedSolid, omega: float, layers: int, count: int) -> Modes:
         CodeError: no stable steady state.
     """
     bricks, root = with_root_forces(solid, layers, ACROSS)
-    places = solid.place(STATIONS * solid.length)
+    places = solid.position(STATIONS * solid.length)
     step = 2 * layers // (len(STATIONS) - 1)
-    sections = [(layer(bricks, k * step), place) for k, place in enumerate(places)]
+    sections = [(layer(bricks, k * step), position) for k, position in enumerate(places)]
     return hexahedra.modes(bricks, solid.material, omega, count, root, sections=sections)
 
 

@@ -65,8 +65,8 @@ class Beam:
         omega: rotor speed, rad/s.
         u, u_s: (q, n) functions for stretch and torsion, and their slopes.
         v: (q, n) functions for bending.
-        turn: (q, n) rotation of the section for each function v, v′/λ.
-        curvature: (q, n) derivative of ``turn``.
+        tilt: (q, n) rotation of the section for each function v, v′/λ.
+        curvature: (q, n) derivative of ``tilt``.
         tense: (n, n) stiffness due to the steady tension, ``∫ N/λ v′²``.
         u_shape, v_shape: (21, n) the functions at ``core.modes.STATIONS``.
     """
@@ -76,7 +76,7 @@ class Beam:
     u: Array
     u_s: Array
     v: Array
-    turn: Array
+    tilt: Array
     curvature: Array
     tense: Array
     u_shape: Array
@@ -93,7 +93,7 @@ def stretched(blade: Blade, omega: float, terms: int) -> Beam:
     u, u_s, _ = pinned_functions(at.ends, terms, at.s)
     v, v_s, v_ss = clamped_functions(at.ends, terms, at.s)
     stretch, slope = steady_stretch(blade, at, omega, terms)
-    turn = v_s / stretch[:, None]
+    tilt = v_s / stretch[:, None]
     where = STATIONS * blade.length
     return Beam(
         at=at,
@@ -101,9 +101,9 @@ def stretched(blade: Blade, omega: float, terms: int) -> Beam:
         u=u,
         u_s=u_s,
         v=v,
-        turn=turn,
-        curvature=(v_ss - turn * slope[:, None]) / stretch[:, None],
-        tense=integral(at.weight * at.sections.EA * (stretch - 1) * stretch, turn),  # N = E A (λ − 1)
+        tilt=tilt,
+        curvature=(v_ss - tilt * slope[:, None]) / stretch[:, None],
+        tense=integral(at.weight * at.sections.EA * (stretch - 1) * stretch, tilt),  # N = E A (λ − 1)
         u_shape=pinned_functions(at.ends, terms, where)[0],
         v_shape=clamped_functions(at.ends, terms, where)[0],
     )
@@ -117,7 +117,7 @@ def in_plane(beam: Beam) -> Problem:
     """Stretch and edgewise bending."""
     at, square = beam.at, beam.omega**2
     m_uu, m_vv = integral(at.mass, beam.u), integral(at.mass, beam.v)
-    M = apart(m_uu, m_vv + integral(at.I_z, beam.turn))
+    M = apart(m_uu, m_vv + integral(at.I_z, beam.tilt))
     C = skew(2 * beam.omega * integral(at.mass, beam.v, beam.u))
     K = apart(
         integral(at.weight * at.sections.EA, beam.u_s) - square * m_uu,
@@ -129,16 +129,16 @@ def in_plane(beam: Beam) -> Problem:
 def out_of_plane(beam: Beam, torsion: bool) -> Problem:
     """Flapwise bending, and torsion if requested."""
     at, square = beam.at, beam.omega**2
-    M = integral(at.mass, beam.v) + integral(at.I_y, beam.turn)
+    M = integral(at.mass, beam.v) + integral(at.I_y, beam.tilt)
     K = (
         integral(at.weight * at.sections.EI_y, beam.curvature)
         + beam.tense
-        - square * integral(at.I_x - at.I_z, beam.turn)
+        - square * integral(at.I_x - at.I_z, beam.tilt)
     )
     if not torsion:
         return M, np.zeros_like(M), K, shape_of([(Z, beam.v_shape)])
     twisting = integral(at.weight * at.sections.GJ, beam.u_s) + square * integral(at.I_z - at.I_y, beam.u)
-    C = skew(-beam.omega * integral(at.I_x + at.I_y - at.I_z, beam.turn, beam.u))
+    C = skew(-beam.omega * integral(at.I_x + at.I_y - at.I_z, beam.tilt, beam.u))
     shape = shape_of([(ROTATION_X, beam.u_shape), (Z, beam.v_shape)])
     return apart(integral(at.I_x, beam.u), M), C, apart(twisting, K), shape
 

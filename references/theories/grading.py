@@ -22,7 +22,7 @@ def element_ends(blade: Blade, elements: int, most: int) -> Array:
     at = sample(blade, ends)
     change = np.diff(np.log([at.EI_y, at.EI_z]))
     change = np.take_along_axis(change, np.abs(change).argmax(0)[None], 0).T
-    even = np.arange(pieces) / pieces
+    equal = np.arange(pieces) / pieces
     graded = np.abs(change) > 1e-6
-    share = np.where(graded, np.expm1(even * change) / np.expm1(np.where(graded, change, 1.0)), even)
+    share = np.where(graded, np.expm1(equal * change) / np.expm1(np.where(graded, change, 1.0)), equal)
     return np.append((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel(), ends[-1])

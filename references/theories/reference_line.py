@@ -28,12 +28,12 @@ class ReferenceLine:
     """Points on the reference line, in axes that rotate with the hub; leading dimensions (elements, points).
 
     Attributes:
-        place: (…, 3) m, from the hub's centre.
-        slope: (…, 3) derivative of ``place`` by the arc length.
+        position: (…, 3) m, from the hub's centre.
+        slope: (…, 3) derivative of ``position`` by the arc length.
         axes: (…, 3, 3) the section's axes, in columns.
     """
 
-    place: Array
+    position: Array
     slope: Array
     axes: Array
 
@@ -51,23 +51,23 @@ def line(blade: Blade, s: Array) -> ReferenceLine:
     t, whose axis and sine are x × t, and then about t by the twist.
     """
     root = root_axes(blade)
-    place, slope = np.empty((*s.shape, 3)), np.empty((*s.shape, 3))
+    position, slope = np.empty((*s.shape, 3)), np.empty((*s.shape, 3))
     ends = np.array([0.0, *blade.kinks, blade.length])
     piece = np.searchsorted(ends[1:-1], s.mean(1))
     for k in np.unique(piece):
         inside = (blade.stations >= ends[k]) & (blade.stations <= ends[k + 1])
         given = blade.stations[inside], blade.curve[inside]
         spline = make_interp_spline(*given, k=min(3, inside.sum() - 1))
-        place[piece == k], slope[piece == k] = spline(s[piece == k]), spline.derivative()(s[piece == k])
+        position[piece == k], slope[piece == k] = spline(s[piece == k]), spline.derivative()(s[piece == k])
     tangent = slope.reshape(-1, 3) / np.linalg.norm(slope.reshape(-1, 3), axis=1, keepdims=True)
     across = np.cross([1.0, 0.0, 0.0], tangent)
     sine = np.linalg.norm(across, axis=1, keepdims=True)
     angle = np.arctan2(sine, tangent[:, :1])
     swing = Rotation.from_rotvec(across * np.where(sine > 0, angle / np.where(sine > 0, sine, 1.0), 1.0))
-    turn = Rotation.from_rotvec(np.outer(twist_at(blade, s.ravel()), [1.0, 0.0, 0.0]))
-    axes = (swing * turn).as_matrix().reshape(*s.shape, 3, 3)
+    twist_rotation = Rotation.from_rotvec(np.outer(twist_at(blade, s.ravel()), [1.0, 0.0, 0.0]))
+    axes = (swing * twist_rotation).as_matrix().reshape(*s.shape, 3, 3)
     hub = root @ [blade.hub_radius, 0.0, 0.0]
-    return ReferenceLine(hub + place @ root.T, slope @ root.T, root @ axes)
+    return ReferenceLine(hub + position @ root.T, slope @ root.T, root @ axes)
 
 
 def moments(mass: Array) -> Array:

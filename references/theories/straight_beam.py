@@ -134,9 +134,9 @@ class ClosedForm(BladeAdapter):
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
         """From the masses at the quadrature points of its integrals; see ``interface.BladeAdapter``."""
         at = line(blade, terms(blade, elements))
-        place = np.zeros((len(at.s), 3))
-        place[:, 0] = blade.hub_radius + at.s
-        points = of_points(at.mass, place, elements)
+        position = np.zeros((len(at.s), 3))
+        position[:, 0] = blade.hub_radius + at.s
+        points = of_points(at.mass, position, elements)
         own = at.I_z.sum() if self.effects.rotary_inertia else at.I_z[-1]
         return replace(points, rotor_inertia=points.rotor_inertia + float(own))
 

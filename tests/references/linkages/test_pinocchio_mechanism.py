@@ -153,7 +153,7 @@ def test_a_loop_joint_leaves_only_its_coordinates_free(kind: Kind) -> None:
     at = np.linspace(0.2, 0.7, len(tree.v))
     pose = np.eye(4)
     for link, value in zip(tree.tree.links, at, strict=True):
-        pose = pose @ link.place @ np.array(mb.at()) @ _moved(link.axis, link.turns, value)
+        pose = pose @ link.frame @ np.array(mb.at()) @ _moved(link.axis, link.turns, value)
     pose = pose @ (tree.tree.bodies["b"][1] if len(at) else frames[0] @ np.linalg.inv(frames[1]))
     loose = mb.Joint("loose", "free", "ground", "b", np.eye(4), np.asarray(np.linalg.inv(pose), float))
     plant = Plant(replace(tied, joints=(loose, replace(tied.joints[0], cut=True))))

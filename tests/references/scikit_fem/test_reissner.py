@@ -51,7 +51,7 @@ class TestForms:
     """Against differences of the exact finite motion."""
 
     slope, axes, force = RNG.normal(size=3), Rotation.from_rotvec(RNG.normal(size=3)).as_matrix(), RNG.normal(size=6)
-    place = RNG.normal(size=3)
+    position = RNG.normal(size=3)
 
     def strain(self, z: Array) -> Array:
         """Γ, and the curvature from differences of the rotation along the arc."""
@@ -79,14 +79,14 @@ class TestForms:
         def potential(q: Array) -> float:
             w, phi = q.reshape(2, 3)
             turn = np.eye(4)
-            turn[:3, :3], turn[:3, 3] = Rotation.from_rotvec(phi).as_matrix(), self.place + w
+            turn[:3, :3], turn[:3, 3] = Rotation.from_rotvec(phi).as_matrix(), self.position + w
             at = turn @ spatial @ turn.T
             return -0.5 * (at[0, 0] + at[1, 1])
 
         force = [-(potential(STEP * e) - potential(-STEP * e)) / (2 * STEP) for e in np.eye(6)]
-        np.testing.assert_allclose(force, forms.centrifugal_force(self.place, spatial), atol=1e-6)
+        np.testing.assert_allclose(force, forms.centrifugal_force(self.position, spatial), atol=1e-6)
         np.testing.assert_allclose(
-            second_differences(potential, 6), forms.centrifugal(self.place, spatial), rtol=1e-5, atol=1e-5
+            second_differences(potential, 6), forms.centrifugal(self.position, spatial), rtol=1e-5, atol=1e-5
         )
 
     def test_inertia_reproduces_the_matrix_of_the_body(self) -> None:
@@ -121,7 +121,7 @@ def test_the_line_agrees_with_core() -> None:
     blade = curved()
     s = np.array([[1.0, 3.0], [12.0, 19.0], [21.0, 39.0]])
     found, theirs = line(blade, s), sections.frames(blade, s.ravel()).reshape(3, 2, 4, 4)
-    np.testing.assert_allclose(found.place, theirs[..., :3, 3], atol=1e-12)
+    np.testing.assert_allclose(found.position, theirs[..., :3, 3], atol=1e-12)
     np.testing.assert_allclose(found.axes, theirs[..., :3, :3], atol=1e-14)
 
 

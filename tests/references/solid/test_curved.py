@@ -70,7 +70,7 @@ def test_section_masses_add_up_to_the_mass_of_the_mesh() -> None:
     """Mass and its first and second moments about the hub: Gauss points along the curve against scikit-fem's matrix."""
     t, w = np.polynomial.legendre.leggauss(12)
     s, w = 0.5 * CURVED.length * (1 + t), 0.5 * CURVED.length * w
-    back = sp.adjoint(sp.inverse(sp.pose(CURVED.axes(s), CURVED.place(s))))
+    back = sp.adjoint(sp.inverse(sp.pose(CURVED.axes(s), CURVED.position(s))))
     total = np.einsum("s,sji,sjk,skl->il", w, back, identified.mass(CURVED, s), back)
     body = hexahedra.solid(CURVED.bricks(np.linspace(0, CURVED.length, 81), ACROSS), GLASS)
     m = hexahedra.mass(body)
@@ -145,8 +145,8 @@ def test_the_file_has_the_sections_of_the_solid() -> None:
 def test_the_root_transmits_the_wrench_that_the_tip_is_given() -> None:
     """The tractions at the root have the resultants of unit forces and moments about the root."""
     force = inside(CURVED, 0.0, ACROSS).force
-    place = CURVED.bricks(np.array([0.0, 0.01]), ACROSS)
-    nodes = place.lattice()[0].reshape(-1, 3) - [CURVED.hub_radius, 0, 0]
+    position = CURVED.bricks(np.array([0.0, 0.01]), ACROSS)
+    nodes = position.lattice()[0].reshape(-1, 3) - [CURVED.hub_radius, 0, 0]
     resultant = np.concatenate([force.sum(axis=1), np.cross(nodes.T[..., None], force, axis=0).sum(axis=1)])
     np.testing.assert_allclose(resultant, np.eye(6), atol=1e-7)
 
@@ -213,7 +213,9 @@ def test_the_beam_is_the_solid(omega: float) -> None:
 def test_calculix_finds_the_same_modes_of_the_whole_solid(omega: float) -> None:
     """One solid, two programs; CalculiX's material turns from layer to layer, and it has no Coriolis forces."""
     bricks, root = with_root_forces(CURVED, 20, ACROSS)
-    sections = [(layer(bricks, 2 * k), place) for k, place in enumerate(CURVED.place(STATIONS * CURVED.length))]
+    sections = [
+        (layer(bricks, 2 * k), position) for k, position in enumerate(CURVED.position(STATIONS * CURVED.length))
+    ]
     ours = hexahedra.modes(bricks, CURVED.material, omega, 6, root, coriolis=False, sections=sections)
     theirs = calculix_blade.CODE.solve(case(), omega, 20, 6)
     np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=3e-4)
@@ -224,8 +226,8 @@ def test_calculix_finds_the_same_modes_of_the_whole_solid(omega: float) -> None:
 def test_a_full_clamp_is_stiffer_than_a_beams() -> None:
     """Without warping and contraction at the root, every mode is higher by two to three times the target."""
     bricks = CURVED.bricks(np.linspace(0.0, CURVED.length, 41), ACROSS)
-    places = CURVED.place(STATIONS * CURVED.length)
-    sections = [(layer(bricks, 4 * k), place) for k, place in enumerate(places)]
+    places = CURVED.position(STATIONS * CURVED.length)
+    sections = [(layer(bricks, 4 * k), position) for k, position in enumerate(places)]
     root = layer(bricks, 0)
 
     def clamp(nodes: np.ndarray) -> np.ndarray:
