@@ -17,6 +17,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 from ...cases.campbell import confirmation, interpolation
 from ...cases.campbell.changes import changes as blade_changes
 from ...cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
+from ...cases.campbell.machine import MachineRequest
 from ...cases.campbell.required import required_margin
 from ...cases.campbell.tracking import Solver
 from ...cases.input.changes import parse
@@ -41,6 +42,7 @@ from ..shared import pdf as as_pdf
 from ..shared.console import output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units
+from . import campbell_machine
 from . import campbell_options as options
 from .arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
 from .errors import UsageError
@@ -76,9 +78,12 @@ def command(
     strict: bool = False,
     html: bool = False,
     pdf: bool = False,
+    blade_only: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
-    """Compute the Campbell diagram of a blade and judge its margins.
+    """Compute the Campbell diagram of a blade or a turbine and judge its margins.
+
+    An OpenFAST .fst file with a tower and at least three blades gives the modes of the whole turbine in the ground's frame.
 
     Prints tables of the modes, of the margins to n per revolution (nP), of resonances, and of crossings and veerings. Writes
     campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds are inserted where two modes
@@ -139,6 +144,8 @@ def command(
         Also write campbell.html: one file with its figures.
     pdf
         Also write campbell.pdf; requires the extra `pdf` (Typst).
+    blade_only
+        Of a turbine (.fst), solve one blade clamped at the hub.
     """
     if strict and operating is None:
         raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")
@@ -148,6 +155,25 @@ def command(
         as_pdf.require()
     given = options.speeds(rpm, omega)
     mount = (mounting or Mounting()).mount()
+    if not blade_only and campbell_machine.is_turbine(blade):
+        options.no_blade_options(
+            elements=elements is not None,
+            azimuth=azimuth is not None,
+            load=load is not None,
+            changes=bool(changes),
+            against=against is not None,
+            add=bool(add),
+            verify=verify,
+            pdf=pdf,
+        )
+        turbine = MachineRequest(
+            speeds=(),
+            modes=2 * modes,
+            per_rev=options.per_rev(per_rev),
+            operating=options.operating(operating, given[1], given[0]) if operating and given else None,
+            margin=required_margin(margin, "--margin"),
+        )
+        return int(not campbell_machine.run(blade, given, turbine, mount, out, html) and strict)
     files = [measurements.user_results(text, measurements.defaults(data_uncertainty, None)) for text in add]
     measurements.check(files, data_uncertainty, None)
     subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])

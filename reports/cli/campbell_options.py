@@ -45,6 +45,19 @@ def blade_alone(file: str) -> tuple[str, ...]:
     )
 
 
+def no_blade_options(**given: bool) -> None:
+    """Check that no option of a single blade is given for a turbine.
+
+    Raises:
+        CaseError: naming the first one.
+    """
+    for name, is_given in given.items():
+        if is_given:
+            raise CaseError(
+                f"--{name}: this option is for one blade, not for a turbine: leave it out, or add --blade-only"
+            )
+
+
 def loads(azimuth: float | None, tilt: float, load: Path | None) -> tuple[str, ...]:
     """What the steady loads mean, one line each; empty without loads."""
     out = []

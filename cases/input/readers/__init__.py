@@ -84,12 +84,13 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
     """
     module = _BY_SUFFIX.get(path.suffix.lower())
     if module is None:
-        from . import beamdyn, bmodes, elastodyn, fst, hawc2, other_files, text
+        from . import beamdyn, bmodes, elastodyn, elastodyn_tower, fst, hawc2, other_files, text
 
         lines = text.load(path)
         signs = (
             ("elastodyn", elastodyn.is_blade),
             ("elastodyn", elastodyn.is_main),
+            ("elastodyn_tower", elastodyn_tower.is_tower),
             ("fst", fst.matches_format),
             ("beamdyn", beamdyn.is_blade),
             ("beamdyn", beamdyn.is_main),

@@ -40,14 +40,21 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(
             f"{text.at(named['compelast'][0])}: CompElast: {kind}: only blades of ElastoDyn (1) and BeamDyn (2) are read"
         )
-    hub = _file(text, "EDFile")
+    hub = file_named(text, "EDFile")
     found = (
-        elastodyn.read(hub, mount) if kind == 1 else beamdyn.read(_file(text, "BDBldFile1"), replace(mount, main=hub))
+        elastodyn.read(hub, mount)
+        if kind == 1
+        else beamdyn.read(file_named(text, "BDBldFile1"), replace(mount, main=hub))
     )
     return replace(found, source=replace(found.source, files=(path, *found.source.files)))
 
 
-def _file(text: Text, name: str) -> Path:
+def file_named(text: Text, name: str) -> Path:
+    """The path under a name in a primary file.
+
+    Raises:
+        CaseError: if it is missing, or no file is there.
+    """
     named = keys(text)
     path = text.path.parent / word(text, named, name, name.rstrip("1")).replace("\\", "/")
     if not os.path.isfile(path):  # also False for an invalid name

@@ -3,7 +3,7 @@
 import re
 from collections.abc import Callable
 
-from .text import Text, keys
+from .text import Text
 
 OPENFAST = re.compile(
     r"-{3,}\s*(aerodyn|servodyn|inflowwind|hydrodyn|subdyn|moordyn|map\+*|icedyn|elastodyn)\b", re.IGNORECASE
@@ -23,10 +23,6 @@ MARKS: tuple[tuple[Callable[[Text], bool], str], ...] = (
         lambda text: any(re.search(r"Mode No\.\s*\d+\s*\(freq", line) for line in text.lines),
         "frequencies that BModes has printed, not its input: give the .bmi file; to compare these frequencies, add "
         "--add bmodes=FILE.out to `southwell verify`",
-    ),
-    (
-        lambda text: "ntwinpst" in keys(text),
-        "an ElastoDyn tower file: Southwell reads blades; give the blade's file (BldFile1 of the main file) or the main file",
     ),
 )
 """How a file is recognised, and what it is."""

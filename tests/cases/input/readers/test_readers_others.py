@@ -406,10 +406,6 @@ def test_bmodes_own_mesh_is_noted(tmp_path: Path) -> None:
             "BModes v3.00\n -------- Mode No.   1  (freq =   0.3 Hz)\n",
             r"frequencies that BModes has printed, .*give the .bmi file",
         ),
-        (
-            "------- ELASTODYN V1.00.* TOWER INPUT FILE ---\nx\n 11  NTwInpSt - stations\n",
-            r"an ElastoDyn tower file: .*BldFile1",
-        ),
         ("------- SERVODYN v1.05.* INPUT FILE ----\nx\n", r"an input file of OpenFAST's SERVODYN, .*or the .fst"),
     ],
 )

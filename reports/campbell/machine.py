@@ -1,0 +1,197 @@
+"""Tables, figure and page of a whole turbine's Campbell diagram."""
+
+import csv
+from collections.abc import Sequence
+from io import StringIO
+from pathlib import Path
+
+import numpy as np
+from matplotlib.figure import Figure
+
+from ...cases.campbell.machine import Line, MachineDiagram
+from ...cases.input import atomic
+from ..shared.certain import certain, relative
+from ..shared.style import COLOURS, MUTED, WIDTH, house, save, title
+from ..shared.units import Units
+from . import cover
+from .cover import Origin
+from .tables import TOO_NEAR, Sheet, markdown
+
+PAGE = "campbell.md"
+
+DPI = 180
+
+FRAME = "Frequencies are in the ground's frame: a blade sees a backward whirl 1P higher and a forward whirl 1P lower."
+
+NAMED = (
+    "A mode is named by the motion with the largest part of its elastic energy, which is the confidence; below 50 % "
+    "the name says little."
+)
+
+_DASHES = {"tower": "-", "collective": (0, (5, 2)), "forward": (0, (4, 1.5, 1, 1.5)), "backward": (0, (1, 1.2))}
+
+
+def sheets(diagram: MachineDiagram, units: Units) -> tuple[Sheet, ...]:
+    """All tables that have rows."""
+    return tuple(s for s in (_modes(diagram, units), _margins(diagram, units), _crossings(diagram, units)) if s.rows)
+
+
+def _modes(diagram: MachineDiagram, units: Units) -> Sheet:
+    rows = []
+    for line in diagram.lines:
+        ends = [certain(float(line.frequencies[k]) * units.frequencies, line.uncertainty) for k in (0, -1)]
+        low, high = 100 * line.confidence.min(), 100 * line.confidence.max()
+        part = f"{high:.0f} %" if high - low < 1 else f"{low:.0f} to {high:.0f} %"
+        rows.append((line.name, *ends, relative(line.uncertainty), part, _changes(diagram, line, units)))
+    first, last = (units.at(float(diagram.omega[k])) for k in (0, -1))
+    head = (
+        "mode",
+        f"{units.frequency} {first}",
+        f"{units.frequency} at {last}",
+        "± relative",
+        "confidence",
+        "name changes",
+    )
+    return Sheet("Modes", head, tuple(rows), f"{FRAME} {NAMED}")
+
+
+def _changes(diagram: MachineDiagram, line: Line, units: Units) -> str:
+    """Where a line takes another name, after the first speed."""
+    own = line.name.partition(" (")[0]
+    other = [k for k, name in enumerate(line.names) if name != own and diagram.omega[k]]
+    if not other:
+        return "–"
+    k = other[0]
+    more = f" and {len(other) - 1} more" if len(other) > 1 else ""
+    return f"{line.names[k]} at {units.at(float(diagram.omega[k]))}{more}"
+
+
+def _margins(diagram: MachineDiagram, units: Units) -> Sheet:
+    request = diagram.request
+    rows = []
+    for n in diagram.nearest:
+        if n.kept:
+            continue
+        name = diagram.lines[n.line].name
+        rows.append((f"{TOO_NEAR} {name}", f"{n.per_rev}P", f"{100 * n.distance:.2g} %", units.at(n.omega)))
+    return Sheet(
+        "Margins violated", ("mode", "excitation", "distance", "at"), tuple(rows), f"Required: {request.margin}."
+    )
+
+
+def _crossings(diagram: MachineDiagram, units: Units) -> Sheet:
+    rows = [
+        (
+            diagram.lines[c.line].name,
+            f"{c.per_rev}P",
+            units.at(c.omega),
+            f"{c.per_rev * c.omega * units.frequencies:.5g}",
+        )
+        for c in sorted(diagram.crossings, key=lambda c: c.omega)
+    ]
+    return Sheet(
+        "Crossings", ("mode", "excitation", "at", units.frequency), tuple(rows), "Interpolated between the speeds."
+    )
+
+
+def draw(diagram: MachineDiagram, units: Units, heading: str) -> Figure:
+    """Draw the lines over speed, labelled at their ends, with rays of n per revolution."""
+    with house():
+        figure = Figure((WIDTH, 5.9))
+        axes = figure.add_axes((0.07, 0.1, 0.62, 0.78))
+        speeds = diagram.omega * units.speeds
+        top = 1.05 * max(float(line.frequencies.max()) for line in diagram.lines) * units.frequencies
+        for k, line in enumerate(diagram.lines):
+            dashes = next((d for word, d in _DASHES.items() if word in line.name), "-")
+            axes.plot(speeds, line.frequencies * units.frequencies, color=COLOURS[k % 8], ls=dashes, lw=1.5)
+        slope = units.frequencies / units.speeds
+        for n in diagram.request.per_rev:
+            end = min(float(speeds[-1]), top / (n * slope))
+            axes.plot([speeds[0], end], [n * slope * speeds[0], n * slope * end], color="#b0b0b0", lw=0.7, zorder=1)
+            axes.annotate(f"{n}P", (end, n * slope * end), (0, 3), textcoords="offset points", size=7.5, color=MUTED)
+        if diagram.request.operating:
+            axes.axvspan(*(s * units.speeds for s in diagram.request.operating), color="#f0f0f0", zorder=0)
+        for y, k in _places(diagram, units, top):
+            axes.annotate(
+                diagram.lines[k].name,
+                (float(speeds[-1]), float(diagram.lines[k].frequencies[-1]) * units.frequencies),
+                (1.02, y / top),
+                xycoords="data",
+                textcoords="axes fraction",
+                size=7.5,
+                va="center",
+                color=COLOURS[k % 8],
+                annotation_clip=False,
+            )
+        axes.set_xlim(float(speeds[0]), float(speeds[-1]))
+        axes.set_ylim(0.0, top)
+        axes.set_xlabel(units.speed_label)
+        axes.set_ylabel(units.frequency_label)
+        title(figure, heading, "ground's frame")
+    return figure
+
+
+def _places(diagram: MachineDiagram, units: Units, top: float) -> list[tuple[float, int]]:
+    """Heights of the labels, at least a line apart, and the lines they belong to, upwards."""
+    order = sorted(range(len(diagram.lines)), key=lambda k: diagram.lines[k].frequencies[-1])
+    out: list[tuple[float, int]] = []
+    for k in order:
+        y = float(diagram.lines[k].frequencies[-1]) * units.frequencies
+        out.append((max(y, out[-1][0] + 0.03 * top) if out else y, k))
+    return out
+
+
+def write(
+    diagram: MachineDiagram, folder: Path, units: Units, command: str, origin: Origin, notes: Sequence[str]
+) -> tuple[Path, ...]:
+    """Write the figure (SVG and PNG), ``campbell.csv`` and the page; return the paths.
+
+    Raises:
+        OSError: if a file cannot be written.
+    """
+    folder.mkdir(parents=True, exist_ok=True)
+    name = diagram.turbine.name
+    figure = draw(diagram, units, f"{name}: natural frequencies versus rotor speed")
+    vector, raster, table = folder / "campbell.svg", folder / "campbell.png", folder / "campbell.csv"
+    save(figure, vector)
+    with house():
+        atomic.through(
+            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
+        )
+    atomic.write(table, _csv(diagram))
+    parts = [
+        f"# Campbell diagram of {name}\n",
+        *[f"{note}.\n" for note in notes],
+        cover.cover(origin),
+        "![Natural frequencies versus rotor speed](campbell.svg)\n",
+        *[markdown(sheet) for sheet in sheets(diagram, units)],
+        cover.unused(origin),
+        f"## Reproduce\n\n```\n{command}\n```\n",
+    ]
+    page = folder / PAGE
+    atomic.write(page, "\n".join(parts))
+    return page, vector, raster, table
+
+
+def _csv(diagram: MachineDiagram) -> str:
+    """One row per mode and speed, in SI units."""
+    out = StringIO()
+    writer = csv.writer(out, lineterminator="\n")
+    writer.writerow(
+        (
+            "omega_rad_s",
+            "rotor_speed_rpm",
+            "mode",
+            "name",
+            "frequency_rad_s",
+            "frequency_hz",
+            "relative_uncertainty",
+            "confidence",
+        )
+    )
+    for k, omega in enumerate(diagram.omega.tolist()):
+        for line in diagram.lines:
+            f = float(line.frequencies[k])
+            numbers = f"{f / (2 * np.pi):.9g}", f"{line.uncertainty:.6g}", f"{line.confidence[k]:.6f}"
+            writer.writerow((repr(omega), f"{omega * 30 / np.pi:.9g}", line.name, line.names[k], repr(f), *numbers))
+    return out.getvalue()

@@ -1,0 +1,130 @@
+"""Towers and whole turbines from ElastoDyn's files."""
+
+import os
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input import readers
+from southwell.cases.input.errors import CaseError
+from southwell.cases.input.readers import turbine
+from southwell.core import solve
+from southwell.core.rotor.turbine import machine, rigid_rotor
+from southwell.core.rotor.turbine_modes import turbine_modes
+from southwell.core.space.inertia import transformed
+from southwell.tests.support.turbine_decks import deck
+
+NREL = Path(os.environ.get("SOUTHWELL_BLADES", "missing")).parent / "linearised" / "nrel5mw" / "Main_Onshore.fst"
+
+
+def test_a_tower_file_is_a_beam_that_stands(tmp_path: Path) -> None:
+    deck(tmp_path)
+    found = readers.reading(tmp_path / "tower.dat")
+    tower = found.blade
+    assert tower.length == 30.0
+    assert found.speed == 0.0
+    assert tower.stiffness[0, 4, 4] == pytest.approx(1.1 * 9e9)  # bends fore-aft, with AdjFASt
+    assert tower.stiffness[0, 5, 5] == pytest.approx(8e9)
+    assert [str(u).split(":")[1].split("(")[0].strip() for u in found.source.unused] == [
+        "TwrFADmp",
+        "TwFAM1Sh … TwSSM2Sh",
+    ]
+
+
+def test_a_tower_without_height_or_with_a_wrong_value_is_refused(tmp_path: Path) -> None:
+    deck(tmp_path)
+    (tmp_path / "main.dat").unlink()
+    with pytest.raises(CaseError, match="--length"):
+        readers.reading(tmp_path / "tower.dat")
+    assert readers.reading(tmp_path / "tower.dat", readers.Mount(length=10.0)).blade.length == 10.0
+    text = (tmp_path / "tower.dat").read_text()
+    (tmp_path / "tower.dat").write_text(text.replace("700", "-700"))
+    with pytest.raises(CaseError, match=r"line 11: TMassDen: -700"):
+        readers.reading(tmp_path / "tower.dat", readers.Mount(length=10.0))
+
+
+def test_a_deck_is_a_turbine(tmp_path: Path) -> None:
+    path = deck(tmp_path)
+    assert turbine.is_turbine(path)
+    read = turbine.read(path)
+    found = read.turbine
+    assert found.gravity == 9.81
+    assert found.yaw == 3e7
+    assert not found.drivetrain.free
+    assert found.drivetrain.gear_ratio == 50.0
+    assert read.speed == pytest.approx(20 * np.pi / 30)
+    # nacelle: 9 t at (0.6, 0.2, 0.9) in OpenFAST's axes is at (0.9, −0.2, 0.6) here, and 100 kg at the tower's top
+    mass, static = found.nacelle[0, 0], found.nacelle[:3, 3:]
+    assert mass == pytest.approx(9100.0)
+    np.testing.assert_allclose(
+        [static[1, 2], static[2, 0], static[0, 1]], 9000 * np.array([0.9, -0.2, 0.6]), rtol=1e-12
+    )
+    assert found.nacelle[3, 3] == pytest.approx(20000.0)  # about the yaw axis, as given
+    unused = " ".join(str(u) for u in read.source.unused)
+    assert "DTTorDmp" in unused
+    assert "PtfmMass" not in unused
+
+
+def test_a_generator_or_a_yaw_bearing_as_the_deck_says(tmp_path: Path) -> None:
+    found = turbine.read(deck(tmp_path, free=True, yaw=False)).turbine
+    assert found.drivetrain.free
+    assert np.isinf(found.yaw)
+    names = turbine_modes(machine(found), 1.0, 10).names
+    assert "drivetrain torsion" in names
+    assert "1st edge collective" not in names[:6]
+
+
+def test_a_deck_without_its_tower_or_with_two_blades_is_no_turbine(tmp_path: Path) -> None:
+    path = deck(tmp_path)
+    main = tmp_path / "main.dat"
+    text = main.read_text()
+    main.write_text(text.replace("3 NumBl", "2 NumBl"))
+    assert not turbine.is_turbine(path)
+    main.write_text(text)
+    (tmp_path / "tower.dat").unlink()
+    assert not turbine.is_turbine(path)
+    assert not turbine.is_turbine(tmp_path / "none.fst")
+
+
+@pytest.mark.skipif(not NREL.is_file(), reason="the decks of OpenFAST's regression tests are not here")
+def test_nrel_5mw_against_published_frequencies() -> None:
+    """J. Jonkman and others, NREL/TP-500-38060, 2009, table 9-1: FAST and ADAMS at rest differ by up to 15 % from each other.
+
+    The generator is locked there. Each frequency is within 2 % of the range of the two codes.
+    """
+    read = turbine.read(NREL).turbine
+    locked = replace(read, drivetrain=replace(read.drivetrain, free=False), yaw=9.02832e9)
+    made = machine(locked)
+    rotor = rigid_rotor(locked, made.blade_mesh)
+    assert rotor[0, 0] == pytest.approx(110_000, rel=5e-3)  # kg, printed
+    assert read.nacelle[0, 0] == 240_000
+    found = turbine_modes(made, 0.0, 13)
+    at = dict(zip(found.names, found.frequencies / (2 * np.pi), strict=True))
+    published = {
+        "1st tower fore-aft": (0.3240, 0.3195),
+        "1st tower side-side": (0.3120, 0.3164),
+        "drivetrain torsion": (0.6205, 0.6094),
+        "1st flap yaw": (0.6664, 0.6296),
+        "1st flap tilt": (0.6675, 0.6686),
+        "1st flap collective": (0.6993, 0.7019),
+        "2nd flap tilt": (1.9223, 1.8558),
+        "2nd flap yaw": (1.9337, 1.6507),
+        "2nd flap collective": (2.0205, 1.9601),
+        "2nd tower fore-aft": (2.9003, 2.8590),
+    }
+    for name, both in published.items():
+        assert min(both) * 0.98 < at[name] < max(both) * 1.02, name
+
+
+def test_the_rotor_is_carried_by_the_tower(tmp_path: Path) -> None:
+    """The tower of the machine with a stiff rotor is the plain solver's beam with nacelle and rotor at its tip."""
+    read = turbine.read(deck(tmp_path, yaw=False)).turbine
+    locked = replace(read, drivetrain=replace(read.drivetrain, stiffness=np.inf))
+    stiff = replace(locked, blade=replace(locked.blade, stiffness=1e4 * locked.blade.stiffness))
+    made = machine(stiff)
+    tip = read.nacelle + transformed(rigid_rotor(stiff, made.blade_mesh), read.shaft)
+    tower = replace(read.tower, tip_mass=np.ascontiguousarray(tip))
+    exact = solve.modes(tower, 0.0, count=2, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
+    np.testing.assert_allclose(turbine_modes(made, 0.0, 2).frequencies, exact, rtol=1e-4)
