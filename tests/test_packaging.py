@@ -12,6 +12,7 @@ from importlib.metadata import version
 from pathlib import Path
 
 import pytest
+import yaml
 from packaging.version import Version
 
 import southwell
@@ -23,6 +24,10 @@ SETUPTOOLS = PROJECT["tool"]["setuptools"]
 
 NOT_PACKAGED = {".ci", "tests", "benchmarks", "examples", "docs"}
 """Folders with modules that are not installed."""
+
+
+FLOWS = ("matrix", "wheels", "publish")
+FORMS = ROOT / ".github" / "ISSUE_TEMPLATE"
 
 
 def tracked() -> list[Path]:
@@ -62,6 +67,39 @@ def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
     assert beside - data_files() == {
         "reports/site/readme.jsonl",
     }  # for the README and the site alone
+
+
+def test_version_and_requirements_are_those_of_the_project_everywhere() -> None:
+    """In the citation and in the conda recipe, where Matplotlib without a GUI and PyYAML have other names."""
+    citation = yaml.safe_load((ROOT / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["version"] == PROJECT["project"]["version"]
+    recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
+    run = recipe[recipe.index("  run:") : recipe.index("test:")]
+    found = {line.strip("- ").replace(" ", "") for line in run.splitlines()[1:] if line.strip()}
+    names = {"matplotlib": "matplotlib-base", "PyYAML": "pyyaml"}
+    needed = {re.sub(r"^[\w-]+", lambda m: names.get(m[0], m[0]), d) for d in PROJECT["project"]["dependencies"]}
+    assert found == needed | {"python>=3.11"}
+
+
+def test_a_release_is_published_only_after_the_matrix_and_the_wheels() -> None:
+    flows = {name: yaml.safe_load((ROOT / ".github" / "workflows" / f"{name}.yml").read_text()) for name in FLOWS}
+    for name in ("matrix", "wheels"):
+        assert "workflow_call" in flows[name][True]  # YAML reads `on` as true
+        assert flows["publish"]["jobs"][name]["uses"] == f"./.github/workflows/{name}.yml"
+    assert flows["publish"][True] == {"push": {"tags": ["v*"]}}
+    job = flows["publish"]["jobs"]["publish"]
+    assert job["needs"] == ["matrix", "wheels"]
+    assert (job["permissions"], job["environment"]) == ({"id-token": "write"}, "release")
+    assert "cp311-* cp312-* cp313-*" in PROJECT["tool"]["cibuildwheel"]["build"]
+
+
+def test_issue_forms_ask_for_what_a_discrepancy_needs() -> None:
+    forms = {p.stem: yaml.safe_load(p.read_text(encoding="utf-8")) for p in FORMS.glob("*.yml") if p.stem != "config"}
+    assert set(forms) == {"bug", "frequency-discrepancy"}
+    for form in forms.values():
+        assert all(field["validations"]["required"] for field in form["body"])
+    asked = {field["id"] for field in forms["frequency-discrepancy"]["body"]}
+    assert asked == {"blade", "numbers", "source", "where", "versions"}
 
 
 @pytest.fixture(scope="module")

@@ -35,7 +35,7 @@ def load(path: Path) -> dict[Any, Any]:
 def steps(path: Path) -> Iterator[dict[str, Any]]:
     found = load(path)
     for job in [found["runs"]] if "runs" in found else found["jobs"].values():
-        yield from job["steps"]
+        yield from job.get("steps", ())  # none if it calls another workflow
 
 
 def scripts() -> dict[str, str]:
