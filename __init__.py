@@ -16,6 +16,7 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from .cases.diagnosis.diagnose import diagnose
     from .core import multibody
     from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
     from .core.effects import Effects
@@ -34,6 +35,7 @@ _WHERE = {
     "Effects": "core.effects",
     "Modes": "core.modes",
     "campbell": "reports.notebook",
+    "diagnose": "cases.diagnosis.diagnose",
     "modes": "reports.notebook",
     "read": "reports.notebook",
     "verify": "reports.notebook",
@@ -46,6 +48,7 @@ __all__ = [
     "Modes",
     "__version__",
     "campbell",
+    "diagnose",
     "modes",
     "multibody",
     "read",

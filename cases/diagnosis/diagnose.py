@@ -22,6 +22,9 @@ Array = NDArray[np.float64]
 UNCERTAINTY = 1e-4
 """Relative differences of frequencies up to this need no cause, unless the caller knows better."""
 
+SHOWN, LIKELY = 3, 0.1
+"""Number of causes that a result lists, and their largest probability by chance."""
+
 MAX_SPEEDS = 4
 """Number of speeds that are solved: the lowest, the highest and some between."""
 
@@ -75,6 +78,10 @@ class Diagnosis:
         hint = f"; {self.indication}" if self.indication else ""
         return f"{first}no known cause of {percent(self.largest)}{hint}"
 
+    def __str__(self) -> str:
+        """The sentence, then the most probable causes and the modes, one line each."""
+        return "\n".join([self.sentence, *cause_lines(self), *mode_lines(self)])
+
     def _remainder(self, cause: Cause) -> str:
         of = f" of {percent(self.largest)}" if cause.remains > 0.1 * self.largest else ""
         return f"remains {percent(cause.remains)}{of}"
@@ -96,7 +103,7 @@ def diagnose(
         speeds: (S,) rotor speeds, rad/s.
         frequencies: (S, M) frequencies of the program, rad/s; nan where unknown.
         modes: (M,) numbers among all modes of the blade, from 1, or names as ``flapwise 1``; by default 1 … M.
-        by_shape: whether numbers are those of the solver's modes, to which the program's were paired by shape.
+        by_shape: whether labels are of the solver's modes, to which the program's were paired by shape.
         uncertainty: relative uncertainty of the program's numbers; smaller differences are not explained.
 
     Raises:
@@ -184,3 +191,25 @@ def _described(name: str, factor: float) -> str:
 def percent(value: float) -> str:
     """A relative difference with two significant digits, in percent."""
     return f"{np.format_float_positional(100.0 * value, precision=2, fractional=False, trim='-')} %"
+
+
+def cause_lines(found: Diagnosis) -> tuple[str, ...]:
+    """The most probable causes, one line each: what they explain, what remains, and the probability by chance."""
+    return tuple(_cause(one) for one in found.causes[:SHOWN] if one.chance <= LIKELY)
+
+
+def _cause(cause: Cause) -> str:
+    explained = f"{100.0 * max(cause.explained, 0.0):.4g} %"
+    chance = f"; by chance {cause.chance:.1g}" if cause.chance > 1e-6 else ""
+    return f"{described(cause.changes)}: explains {explained}, remains {percent(cause.remains)}{chance}"
+
+
+def mode_lines(found: Diagnosis) -> tuple[str, ...]:
+    """One line for each mode: the difference at rest, and both slopes."""
+    return tuple(f"{one.mode}: {_split(one)}" for one in found.modes if np.isfinite(one.offset))
+
+
+def _split(one: ModeSplit) -> str:
+    rest = f"at rest {100.0 * one.offset:+.3f} %"
+    slope = f", φ {one.slope:.4g} instead of {one.slope_reference:.4g}" if np.isfinite(one.slope) else ""
+    return f"{rest}{slope}".replace("-", "−")

@@ -42,7 +42,7 @@ class Problem:
         blade: the blade.
         speeds: (S,) rad/s.
         labels: (M,) of the modes.
-        by_shape: whether numbers are those of the solver's modes, to which the other program's were paired by shape.
+        by_shape: whether labels are of the solver's modes, to which the other program's were paired by shape.
         hypotheses: by name.
     """
 
@@ -59,6 +59,7 @@ class Problem:
         return max(*numbers, len(self.labels)) + EXTRA
 
 
+@lru_cache(maxsize=64)
 def reference(problem: Problem) -> Array:
     """(S, M) frequencies of the blade without a hypothesis, rad/s; nan for a mode or speed without an answer."""
     return labelled(problem, solved(problem, (), FINE), problem.blade)
@@ -114,6 +115,7 @@ def solved(problem: Problem, changes: tuple[Change, ...], elements: int) -> list
     return model.solve(changed, problem.speeds, problem.count, elements)
 
 
+@lru_cache(maxsize=64)
 def names(problem: Problem) -> list[tuple[str, ...]]:
     """Names of the solver's modes at each speed, as ``flapwise 1``; empty at a speed without an answer."""
     return [_named(one, problem.blade) if one else () for one in solved(problem, (), FINE)]
@@ -130,24 +132,28 @@ def labelled(problem: Problem, answers: Sequence[Modes | None], blade: Blade) ->
     for row, own in enumerate(answers):
         if own is None:
             continue
-        named = _named(own, blade) if by_name else ()
-        partners = _partners(problem, row, own) if problem.by_shape else {}
-        for column, label in enumerate(problem.labels):
-            if isinstance(label, str):
-                place = named.index(label) if label in named else None
-            else:
-                place = partners.get(label) if problem.by_shape else label - 1
+        if problem.by_shape:
+            places = _partners(problem, row, own)
+        else:
+            places = _places(problem.labels, _named(own, blade) if by_name else ())
+        for column, place in enumerate(places):
             if place is not None and place < len(own.frequencies):
                 out[row, column] = own.frequencies[place]
     return out
 
 
-def _partners(problem: Problem, row: int, own: Modes) -> dict[int, int | None]:
-    """Index of the partner of each of the solver's modes, by its number."""
+def _places(labels: Sequence[Label], named: Sequence[str]) -> list[int | None]:
+    """Indices of labels among modes with these names; None for a name that does not occur."""
+    return [label - 1 if isinstance(label, int) else named.index(label) if label in named else None for label in labels]
+
+
+def _partners(problem: Problem, row: int, own: Modes) -> list[int | None]:
+    """Index of the partner of each label's mode of the solver."""
     base = solved(problem, (), FINE)[row]
     if base is None:
-        return {}
-    numbers = [label for label in problem.labels if isinstance(label, int) and label <= len(base.frequencies)]
+        return [None] * len(problem.labels)
+    known = _places(problem.labels, names(problem)[row])
+    places = [place for place in known if place is not None and place < len(base.frequencies)]
     ours, theirs = of_blade(base, weights(problem.blade)), of_blade(own)
-    found = pair(ours, theirs, [number - 1 for number in numbers], LEAST_MAC)
-    return {number: partner.mode for number, partner in zip(numbers, found, strict=True)}
+    partner = dict(zip(places, pair(ours, theirs, places, LEAST_MAC), strict=True))
+    return [partner[place].mode if place in partner else None for place in known]

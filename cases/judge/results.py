@@ -3,8 +3,8 @@
 The file has one JSON object per line; ``kind`` identifies its type. The first line is the plan: every case and code of
 the run. The last line is the completion record: the number of lines of each kind before it. A file without either, or
 without the cells that its plan requires, is *unfinished*, and no command accepts it as a result. Between them are the
-settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, and one
-line about the run itself.
+settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, diagnoses, and
+one line about the run itself.
 """
 
 from collections import Counter
@@ -145,6 +145,27 @@ class Control:
 
 
 @dataclass(frozen=True)
+class Diagnosed:
+    """Why the frequencies of one column differ from core's; see ``cases.diagnosis``.
+
+    Attributes:
+        case: as in ``Cell``.
+        code: as in ``Cell``.
+        known: whether a cause is known.
+        sentence: the diagnosis in one line.
+        causes: the most probable causes, one line each.
+        modes: difference at rest and slope with speed, one line for each mode.
+    """
+
+    case: str
+    code: str
+    known: bool
+    sentence: str
+    causes: tuple[str, ...] = ()
+    modes: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
 class BudgetEntry:
     """Effect of one cause on one of core's frequencies: one entry of the error budget.
 
@@ -238,6 +259,7 @@ class Run:
         controls: results of the seeded faults.
         error_budget: one entry per cause and mode.
         origins: origin of the answers of each column.
+        diagnoses: why columns differ from core.
         plan: every planned column.
         unfinished: one sentence on what is missing; empty if the run is complete.
     """
@@ -250,6 +272,7 @@ class Run:
     controls: tuple[Control, ...] = ()
     error_budget: tuple[BudgetEntry, ...] = ()
     origins: tuple[Origin, ...] = ()
+    diagnoses: tuple[Diagnosed, ...] = ()
     plan: tuple[Planned, ...] = ()
     unfinished: str = ""
 
@@ -261,10 +284,11 @@ KINDS: dict[str, type] = {
     "control": Control,
     "budget": BudgetEntry,
     "origin": Origin,
+    "diagnosis": Diagnosed,
 }
 """Kind of line → its type, in the order of the file."""
 
-ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS} | {"budget": "error_budget"}
+ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS} | {"budget": "error_budget", "diagnosis": "diagnoses"}
 """Kind of line → the field of ``Run`` that holds such lines."""
 
 

@@ -3,7 +3,7 @@
 For each blade core's references come first, then each column. A task is a pure function of picklable arguments.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Collection, Iterable, Sequence
 from concurrent.futures import FIRST_COMPLETED, BrokenExecutor, Executor, Future, wait
 from dataclasses import asdict, dataclass, replace
 from importlib.metadata import version
@@ -16,9 +16,10 @@ from ...references.protocol import sources
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Failure, Limits, raised
 from ...references.protocol.store import StoreError
+from ..diagnosis import columns as diagnosis
 from ..input.errors import CaseError
 from ..judge.cells import Rows, failing
-from ..judge.results import BudgetEntry, Cell, Level, Origin, Planned, Run
+from ..judge.results import BudgetEntry, Cell, Diagnosed, Level, Origin, Planned, Run
 from ..plan.column import Column
 from ..plan.names import unique
 from ..plan.subject import Subject, asked_about, speeds_of_blades
@@ -83,7 +84,7 @@ def run(
         memory: memory limit for one solution, bytes.
         reuse: whether codes' earlier answers may be taken from the store.
         user_results: results without a code; each adds a column.
-        parts: whether to compute the error budget of core.
+        parts: whether to compute the error budget of core, and the diagnoses of columns that fail.
         on_plan: called with every column before the first task starts.
 
     Raises:
@@ -122,6 +123,7 @@ def run(
                     split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
+        reasons = _diagnosed(plans, rows, executor, {one.name for one in user_results}) if parts else ()
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
     finally:
         for future in [*pending, *(future for _, future in split)]:
@@ -139,8 +141,22 @@ def run(
             for column in task.columns
             if column.origin
         ),
+        diagnoses=reasons,
         plan=plan,
     )
+
+
+def _diagnosed(
+    plans: Sequence[_Task], rows: dict[tuple[str, str], Rows], executor: Executor, added: Collection[str]
+) -> tuple[Diagnosed, ...]:
+    """Why columns that fail, and files of other programs, differ from core; one that cannot be solved is left out."""
+    futures: list[Future[Diagnosed]] = []
+    for task in plans:
+        for column in task.columns:
+            cells, _ = rows[task.subject.name, column.name]
+            if task.subject.blade is not None and diagnosis.is_due(cells, column.name in added):
+                futures.append(executor.submit(diagnosis.diagnosed, task.subject.blade, cells))
+    return tuple(answer for answer in map(_answer, futures) if isinstance(answer, Diagnosed))
 
 
 def _planned(task: _Task, column: Column) -> Planned:

@@ -7,7 +7,7 @@ from ...cases.judge.results import Run
 from ...cases.store import unfinished
 from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
-from ..verification import evidence, terminal
+from ..verification import diagnoses, evidence, terminal
 from .arguments import RESULTS, found, writing
 
 
@@ -75,5 +75,7 @@ def show_tables(run: Run) -> None:
     for table in terminal.matrix(run, console.width):
         console.print(table)
     console.print(terminal.legend(), style="dim", markup=False)
+    for line in diagnoses.lines(run):
+        console.print(f"Why it differs: {line}", markup=False, soft_wrap=True)
     if run.controls:
         console.print(terminal.controls(run))

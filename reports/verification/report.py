@@ -17,7 +17,7 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import case_tables, controls, error_budget, evidence, paper_table, witnesses
+from . import case_tables, controls, diagnoses, error_budget, evidence, paper_table, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -198,6 +198,7 @@ class Section:
     figures: list[str]
     reasons: str
     count: int
+    diagnoses: str
     error_budget: str
     error_budget_at: str
 
@@ -228,6 +229,7 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
+        diagnoses=_plainly(diagnoses.rows(run, case)),
         error_budget=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
         error_budget_at=error_budget.heading(run, case, unit),
     )

@@ -1,0 +1,52 @@
+"""The diagnosis of a column of a run: why a code's, or another program's, frequencies fail."""
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from ...core.blade import Blade
+from ..judge.results import Cell, Diagnosed
+from .diagnose import cause_lines, diagnose, mode_lines
+
+LEAST, MOST = 1e-5, 1e-3
+"""Limits of the uncertainty that is taken from the cells, relative."""
+
+
+def is_due(cells: Sequence[Cell], added: bool) -> bool:
+    """Whether a column has a diagnosis: it has a frequency that fails, or is the file of another program."""
+    answered = _frequencies(cells)
+    return bool(answered) and (added or any(cell.verdict == "fail" for cell in answered))
+
+
+def _frequencies(cells: Sequence[Cell]) -> list[Cell]:
+    """The cells of a code with a frequency that depends on nothing but the rotor speed."""
+    some = (cell for cell in cells if cell.role == "code" and cell.quantity == "frequency" and not cell.where)
+    return [cell for cell in some if cell.mode and cell.value]
+
+
+def diagnosed(blade: Blade, cells: Sequence[Cell]) -> Diagnosed:
+    """The diagnosis of one column of one blade, from its cells; the modes were paired by shape, or by the file's names."""
+    answered = _frequencies(cells)
+    speeds, names = (sorted({get(cell) for cell in answered}) for get in (_omega, _name))
+    given = np.full((len(speeds), len(names)), np.nan)
+    for cell in answered:
+        given[speeds.index(cell.omega), names.index(cell.name)] = cell.value
+    uncertainties = [cell.uncertainty for cell in answered if cell.uncertainty is not None]
+    uncertainty = float(np.clip(np.median(uncertainties), LEAST, MOST)) if uncertainties else LEAST
+    found = diagnose(blade, speeds, given, names, by_shape=True, uncertainty=uncertainty)
+    return Diagnosed(
+        case=cells[0].case,
+        code=cells[0].code,
+        known=found.cause is not None or bool(found.arithmetic),
+        sentence=found.sentence,
+        causes=cause_lines(found),
+        modes=mode_lines(found),
+    )
+
+
+def _omega(cell: Cell) -> float:
+    return cell.omega
+
+
+def _name(cell: Cell) -> str:
+    return cell.name

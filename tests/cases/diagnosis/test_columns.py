@@ -1,0 +1,65 @@
+"""Columns of a run that fail, and files of other programs, get a diagnosis from their cells."""
+
+from dataclasses import replace
+
+from southwell.cases.diagnosis.columns import diagnosed, is_due
+from southwell.cases.judge.results import Cell, Diagnosed, Run, Verdict
+from southwell.core.blade import uniform_blade
+from southwell.core.participation import families, numbered, participation
+from southwell.core.solve import mesh_sweep
+from southwell.reports.verification import diagnoses
+
+BLADE = uniform_blade("beam", 6.0, 0.6, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=1.2, I_y=1e-3, I_z=2e-3)
+SPEEDS = (0.0, 10.0, 20.0)
+
+
+def cell(omega: float, mode: int, name: str, frequency: float, verdict: Verdict = "fail", code: str = "code") -> Cell:
+    family, ordinal = name.split()
+    return Cell("beam", omega, mode, family, code, "1", "code", frequency, frequency, 0.01, 1e-6, 1e-3, verdict,
+                ordinal=int(ordinal))  # fmt: skip
+
+
+def cells() -> list[Cell]:
+    """Cells of a code that takes the hub radius as 0; its modes have the names of the right blade."""
+    right, wrong = (list(mesh_sweep(b, SPEEDS, 40, 5)) for b in (BLADE, replace(BLADE, hub_radius=0.0)))
+    out = []
+    for modes, base in zip(wrong, right, strict=True):
+        named = numbered(families(participation(base, BLADE)))
+        out += [cell(modes.omega, k + 1, named[k], float(modes.frequencies[k])) for k in range(4)]
+    return out
+
+
+def test_a_failing_column_is_diagnosed_from_its_cells() -> None:
+    found = diagnosed(BLADE, cells())
+    assert found.known
+    assert found.sentence.startswith("as core without hub radius (remains 0.000")
+    assert found.causes[0].startswith("without hub radius: explains 100 %")
+    assert any(line.startswith("flapwise 1: at rest ") for line in found.modes)
+
+
+def test_only_failures_and_added_files_are_due() -> None:
+    passing = [replace(one, verdict="pass") for one in cells()]
+    assert not is_due(passing, added=False)
+    assert is_due(passing, added=True)
+    assert is_due([*passing[1:], cells()[0]], added=False)
+    crashed = replace(cells()[0], value=None, mode=0)
+    assert not is_due([crashed], added=True)
+    assert not is_due([replace(one, role="measured") for one in cells()], added=True)
+
+
+def test_the_terminal_and_the_report_show_it() -> None:
+    one = Diagnosed(
+        "beam", "code", True, "as core without hub radius (remains 0.0002 %)", ("a", "b"), ("flapwise 1: …",)
+    )
+    run = Run((), diagnoses=(one,))
+    assert diagnoses.lines(run) == ["code: as core without hub radius (remains 0.0002 %)."]
+    (row,) = diagnoses.rows(run, "beam")
+    assert row["most probable causes"] == "a; b"
+    assert diagnoses.rows(run, "other") == []
+    both = replace(run, diagnoses=(one, replace(one, case="other")))
+    assert diagnoses.lines(both)[0].startswith("code, beam: ")
+
+
+def test_a_diagnosis_tolerates_a_mode_that_the_solver_names_otherwise() -> None:
+    strange = cell(20.0, 5, "torsion 7", 900.0)
+    assert diagnosed(BLADE, [*cells(), strange]).sentence.startswith("as core without hub radius")
