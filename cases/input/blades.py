@@ -30,7 +30,7 @@ from ...core.space import spatial as sp
 from . import files
 from .errors import CaseError, nearest
 from .readers.sections import FromFile, Mounted, Sections
-from .readers.source import Unused, unused
+from .readers.source import BladeFile, Mount, Source, Unused, unused
 
 POISSON = 0.3
 """Poisson's ratio for the torsional stiffness of a dimensionless beam, which does not affect its bending."""
@@ -142,6 +142,15 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
                 name_, _, unit = column.partition(" ")
                 left += unused(name_, columns[column], unit.strip("[]"), path, f"the case has {switch}")
         return blade, left
+
+    def file_read(self, name: str, folder: Path) -> BladeFile | None:
+        """See ``Mounted``; None if the case leaves out the twist or replaces the table by pieces."""
+        if self.pieces or not self.twisted:
+            return None
+        factors = (self.mass_factor, self.bending_factor, self.bending_factor)
+        mount = Mount(length=self.length, multipliers=factors, offsets=not self.centred)
+        path = folder / self.file
+        return BladeFile(path, self.blade(name, folder), Source("Southwell CSV", (path,), ""), mount)
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, its table read from ``folder``.

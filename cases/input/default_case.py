@@ -8,7 +8,7 @@ import numpy as np
 
 from ...core.blade import Blade
 from .readers.sections import FromFile
-from .readers.source import Unused
+from .readers.source import BladeFile, Unused
 from .schema import Case, CaseFile, Compare, Speeds, Variant
 
 MODES, TARGET = 6, 1e-3
@@ -24,6 +24,7 @@ def default_case(
     title: str = "",
     modes: int = MODES,
     unused: Sequence[Unused] = (),
+    file: BladeFile | None = None,
 ) -> Case:
     """A blade at given speeds as a case: the lowest modes, within 0.1 %, confirmed by at least one independent group.
 
@@ -35,6 +36,7 @@ def default_case(
         title: title of the report, one line.
         modes: number of modes compared.
         unused: non-zero quantities of the files that the blade does not use.
+        file: the blade's file as read.
     """
     name = re.sub(r"[^a-z0-9.-]+", "-", Path(blade.name).stem.lower()).strip("-.") or "blade"
     omega = np.asarray(speeds, dtype=float)
@@ -48,4 +50,4 @@ def default_case(
         speeds=Speeds(rpm=typed) if rpm else Speeds(rad_s=typed),
         compare=Compare(modes=modes, target=TARGET),
     )
-    return Case(source, text, (Variant(name, blade, omega, tuple(unused)),))
+    return Case(source, text, (Variant(name, blade, omega, tuple(unused), file),))

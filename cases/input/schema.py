@@ -20,7 +20,7 @@ from . import files
 from .blades import BladeData, Dimensionless
 from .errors import CaseError, nearest
 from .names import Name, Typed
-from .readers.source import Unused
+from .readers.source import BladeFile, Unused
 from .toml import OR_A_NAME, convert, document, finite
 
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
@@ -118,12 +118,14 @@ class Variant:
         blade: as every code is given it.
         speeds: (k,) rad/s, ascending.
         unused: non-zero quantities of the blade's files that the blade does not use.
+        file: the blade's file as read, for a second reading; None if there is none, or if the blade was changed since.
     """
 
     name: str
     blade: Blade
     speeds: NDArray[np.float64]
     unused: tuple[Unused, ...] = ()
+    file: BladeFile | None = None
 
 
 @dataclass(frozen=True)
@@ -176,9 +178,10 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         name = f"{text.name}/{label}" if label else text.name
         try:
             found, left = blade.read(name, folder)
+            file = blade.file_read(name, folder)
         except BladeError as error:
             raise CaseError(f"{where}: blade: {error}") from error
-        variants.append(Variant(name, found, speeds, left))
+        variants.append(Variant(name, found, speeds, left, file))
     return Case(path, text, tuple(variants))
 
 

@@ -53,7 +53,7 @@ def _faults(row: Any) -> Iterator[str]:
         yield f"omega: {omega:g}: no rotor speed"
     if isinstance(mode, int) and not 0 <= mode <= MOST_MODES:
         yield f"mode: {mode}: counted from 1"
-    if hasattr(row, "verdict"):
+    if hasattr(row, "verdict") and hasattr(row, "mode"):
         yield from _cell(row)
     if getattr(row, "cause", CAUSES[0]) not in CAUSES:
         yield f"cause: {row.cause!r}: known are {', '.join(CAUSES)}"

@@ -3,8 +3,8 @@
 The file has one JSON object per line; ``kind`` identifies its type. The first line is the plan: every case and code of
 the run. The last line is the completion record: the number of lines of each kind before it. A file without either, or
 without the cells that its plan requires, is *unfinished*, and no command accepts it as a result. Between them are the
-settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, diagnoses, and
-one line about the run itself.
+settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, diagnoses, checks of
+properties, and one line about the run itself.
 """
 
 from collections import Counter
@@ -229,6 +229,39 @@ class Setting:
 
 
 @dataclass(frozen=True)
+class PropertyCheck:
+    """One property of a blade, or of the model that a code assembles of it, against a second reading of the blade's file.
+
+    Attributes:
+        case: as in ``Cell``.
+        code: the second reader, or the code whose model it is.
+        version: its version.
+        quantity: ``reading`` or ``fingerprint``.
+        part: the property: ``edgewise stiffness``, ``mass``; empty if nothing is compared.
+        value: in Southwell's reading, or in the code's model; None if it is infinite.
+        reference: in the second reading, or by quadrature of its stations; None if it is infinite.
+        unit: of both.
+        difference: relative; None if it is infinite, or nothing is compared.
+        target: relative.
+        verdict: pass, fail, not run, or not applicable.
+        reason: one line for any verdict other than a plain pass.
+    """
+
+    case: str
+    code: str
+    version: str
+    quantity: Literal["reading", "fingerprint"]
+    part: str
+    value: float | None
+    reference: float | None
+    unit: str
+    difference: float | None
+    target: float
+    verdict: Verdict
+    reason: str = ""
+
+
+@dataclass(frozen=True)
 class Planned:
     """A planned column of one case.
 
@@ -261,6 +294,7 @@ class Run:
         origins: origin of the answers of each column.
         diagnoses: why columns differ from core.
         plan: every planned column.
+        property_checks: second readings, and fingerprints of the codes' models.
         unfinished: one sentence on what is missing; empty if the run is complete.
     """
 
@@ -274,6 +308,7 @@ class Run:
     origins: tuple[Origin, ...] = ()
     diagnoses: tuple[Diagnosed, ...] = ()
     plan: tuple[Planned, ...] = ()
+    property_checks: tuple[PropertyCheck, ...] = ()
     unfinished: str = ""
 
 
@@ -285,10 +320,13 @@ KINDS: dict[str, type] = {
     "budget": BudgetEntry,
     "origin": Origin,
     "diagnosis": Diagnosed,
+    "property": PropertyCheck,
 }
 """Kind of line → its type, in the order of the file."""
 
-ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS} | {"budget": "error_budget", "diagnosis": "diagnoses"}
+IRREGULAR = {"budget": "error_budget", "diagnosis": "diagnoses", "property": "property_checks"}
+
+ROWS: dict[str, str] = {kind: f"{kind}s" for kind in KINDS} | IRREGULAR
 """Kind of line → the field of ``Run`` that holds such lines."""
 
 

@@ -3,18 +3,20 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib.metadata import version
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, Setting
-from ..solve import error_budget
+from ..solve import error_budget, properties
 from ..solve.reference import References, references
 from . import user_columns
 from .blade_columns import columns
 from .column import Column
 from .settings import setting
+from .subject import PropertyChecks
 from .user_results import UserResults
 
 
@@ -73,6 +75,12 @@ class BladeSubject:
         """See ``Subject``."""
         kept = [column.effects for column in columns]
         return partial(references, self.variant.blade, list(self.points), self.case.text.compare, kept)
+
+    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
+        """See ``Subject``."""
+        rows, stations = properties.of_reading(self.name, self.variant.file, self.blade)
+        rows += properties.of_core(self.name, self.blade, stations, version("southwell"))
+        return PropertyChecks(rows, properties.weighings(self.name, self.blade, stations, codes, limits))
 
     def error_budget(self) -> Callable[[], list[BudgetEntry]]:
         """See ``Subject``."""

@@ -21,6 +21,7 @@ from ..solve.mechanism import QUANTITIES, references
 from ..solve.reference import References
 from . import mechanism_columns
 from .column import Column
+from .subject import NOT_CHECKED, PropertyChecks
 from .user_results import UserResults
 
 
@@ -101,6 +102,10 @@ class MechanismSubject:
     def references(self, columns: Sequence[Column]) -> Callable[[], References]:
         """See ``Subject``."""
         return partial(references, self.described, self.points, self.compare.modes)
+
+    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
+        """Mechanisms are given by bodies, not by stations: there is nothing to integrate."""
+        return NOT_CHECKED
 
     def error_budget(self) -> None:
         """See ``Subject``."""

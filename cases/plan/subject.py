@@ -5,14 +5,27 @@ subject, then its columns.
 """
 
 from collections.abc import Callable, Collection, Sequence
+from dataclasses import dataclass
 from typing import Any, Protocol
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
-from ..judge.results import BudgetEntry, Setting
+from ..judge.results import BudgetEntry, PropertyCheck, Setting
 from .column import Column
 from .user_results import UserResults
+
+
+@dataclass(frozen=True)
+class PropertyChecks:
+    """What is known of a subject's second reading, and the tasks that weigh the models of codes."""
+
+    rows: Sequence[PropertyCheck] = ()
+    tasks: Sequence[Callable[[], list[PropertyCheck]]] = ()
+
+
+NOT_CHECKED = PropertyChecks()
+"""Of a subject whose properties are not checked."""
 
 
 class Subject(Protocol):
@@ -69,6 +82,10 @@ class Subject(Protocol):
 
     def references(self, columns: Sequence[Column]) -> Callable[[], dict[Any, list[Any]]]:
         """The task that solves core's references: effects → a reference, or a failure, at each point."""
+        ...
+
+    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
+        """The second reading of its file, and the tasks that weigh the models of codes; arguments as for ``columns``."""
         ...
 
     def error_budget(self) -> Callable[[], list[BudgetEntry]] | None:

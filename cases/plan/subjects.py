@@ -12,7 +12,7 @@ from ..input.changes import Change
 from ..input.default_case import default_case
 from ..input.errors import CaseError
 from ..input.library import is_blade_file
-from ..input.readers import Mount
+from ..input.readers import BladeFile, Mount
 from ..input.schema import Case
 from . import mechanism
 from .blade import blades
@@ -59,7 +59,8 @@ def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, moun
         raise CaseError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")
     files = ", ".join(path.name for path in source.files)
     about = (f"{source.format}: {files}", f"axes: {source.axes}", *source.notes)
-    return default_case(blade, at, rpm=rpm, source="; ".join(about), unused=source.unused)
+    file = BladeFile(Path(name), reading.blade, source, mount)
+    return default_case(blade, at, rpm=rpm, source="; ".join(about), unused=source.unused, file=file)
 
 
 def _changed(case: Case | Subject, edits: Sequence[Change]) -> Case | Subject:
@@ -75,7 +76,7 @@ def _changed(case: Case | Subject, edits: Sequence[Change]) -> Case | Subject:
         compare=replaced(case.text.compare, tables=()),
         discretisation=None,
     )
-    variants = tuple(replace(v, blade=blade_changes.apply(v.blade, edits)) for v in case.variants)
+    variants = tuple(replace(v, blade=blade_changes.apply(v.blade, edits), file=None) for v in case.variants)
     return replace(case, text=text, variants=variants)
 
 

@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core.blade import Blade
-from ...references.readers import Asked, NotInstalledError, NotReadError, read
+from ...references.readers import Asked, NotInstalledError, NotReadError, Stations, read
 from ..input.readers import Mount, Source
 from .comparison import Property, compare
 
@@ -17,11 +17,13 @@ class SecondReading:
         reader: the second reader and its version; its distribution, if it is not installed; else empty.
         properties: one per property, with the largest difference; empty without a second reading.
         missing: why there is no second reading, in one line; empty if there is.
+        stations: as the second reader sees them; None without a second reading.
     """
 
     reader: str
     properties: tuple[Property, ...] = ()
     missing: str = ""
+    stations: Stations | None = None
 
     @property
     def wrong(self) -> tuple[Property, ...]:
@@ -48,4 +50,4 @@ def read_again(blade: Blade, path: Path, source: Source, mount: Mount) -> Second
     except NotReadError as error:
         return SecondReading("", missing=f"{source.format}: {error}")
     stated = tuple(name for name in ("hub_radius", "precone", "pitch") if getattr(mount, name) is not None)
-    return SecondReading(stations.reader, compare(blade, stations, stated))
+    return SecondReading(stations.reader, compare(blade, stations, stated), stations=stations)

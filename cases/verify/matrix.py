@@ -19,10 +19,10 @@ from ...references.protocol.store import StoreError
 from ..diagnosis import columns as diagnosis
 from ..input.errors import CaseError
 from ..judge.cells import Rows, failing
-from ..judge.results import BudgetEntry, Cell, Diagnosed, Level, Origin, Planned, Run
+from ..judge.results import BudgetEntry, Cell, Diagnosed, Level, Origin, Planned, PropertyCheck, Run
 from ..plan.column import Column
 from ..plan.names import unique
-from ..plan.subject import Subject, asked_about, speeds_of_blades
+from ..plan.subject import NOT_CHECKED, PropertyChecks, Subject, asked_about, speeds_of_blades
 from ..plan.user_results import UserResults, check
 from ..solve import error_budget
 
@@ -55,6 +55,7 @@ class _Task:
     core: Callable[[], dict[Any, list[Any]]]
     column: Column | None = None
     error_budget: Callable[[], list[BudgetEntry]] | None = None
+    properties: PropertyChecks = NOT_CHECKED
 
     @property
     def label(self) -> str:
@@ -84,7 +85,8 @@ def run(
         memory: memory limit for one solution, bytes.
         reuse: whether codes' earlier answers may be taken from the store.
         user_results: results without a code; each adds a column.
-        parts: whether to compute the error budget of core, and the diagnoses of columns that fail.
+        parts: whether to read files again, weigh the codes' models, and compute the error budget of core and the diagnoses
+            of columns that fail.
         on_plan: called with every column before the first task starts.
 
     Raises:
@@ -94,13 +96,14 @@ def run(
     described = _described(codes, asked_about(subjects))
     unique(subjects, described, user_results)
     check(user_results, speeds_of_blades(subjects), [c.name for c in described])
-    plans = _tasks(subjects, described, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results)
+    plans = _tasks(subjects, described, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results, parts)
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
     rows: dict[tuple[str, str], Rows] = {}
     pending: dict[Future[Any], _Task] = {}
     split: list[tuple[_Task, Future[list[BudgetEntry]]]] = []
+    weighed: list[Future[list[PropertyCheck]]] = []
     try:
         for task in plans:
             pending[executor.submit(task.core)] = task
@@ -121,12 +124,15 @@ def run(
                 if parts and not split and all(t.column for t in pending.values()):
                     # after all columns: they are short, so that no worker is idle at the end
                     split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
+                    weighed = [executor.submit(weigh) for task in plans for weigh in task.properties.tasks]
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
         reasons = _diagnosed(plans, rows, executor, {one.name for one in user_results}) if parts else ()
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
+        checks = [row for task in plans for row in task.properties.rows]
+        checks += [row for future in weighed for row in future.result()]
     finally:
-        for future in [*pending, *(future for _, future in split)]:
+        for future in [*pending, *weighed, *(future for _, future in split)]:
             future.cancel()
     ordered = [rows[task.subject.name, column.name] for task in plans for column in task.columns]
     return Run(
@@ -143,6 +149,7 @@ def run(
         ),
         diagnoses=reasons,
         plan=plan,
+        property_checks=tuple(checks),
     )
 
 
@@ -193,6 +200,7 @@ def _tasks(
     codes: Sequence[Description],
     limits: Callable[[Subject], Limits],
     user_results: Sequence[UserResults],
+    parts: bool,
 ) -> list[_Task]:
     """The task of each subject, with its columns. A code's answers on whether it accepts a blade are divided among them."""
     out, blades = [], 0
@@ -200,7 +208,9 @@ def _tasks(
         asked = [replace(code, refused=code.refused[blades : blades + 1]) for code in codes]
         blades += subject.blade is not None
         columns = dated(subject.columns(asked, limits(subject), user_results), codes)
-        out.append(_Task(subject, columns, subject.references(columns), error_budget=subject.error_budget()))
+        checks = subject.property_checks(asked, limits(subject)) if parts else NOT_CHECKED
+        core = subject.references(columns)
+        out.append(_Task(subject, columns, core, error_budget=subject.error_budget(), properties=checks))
     return out
 
 

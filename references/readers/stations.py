@@ -31,8 +31,8 @@ class Asked:
         beside: files that belong to it: ElastoDyn's or BeamDyn's main file of a blade file, the htc of a structural file.
         length: from root to tip, m; needed by formats that contain only fractions of it.
         subset: set and subset of a HAWC2 structural file.
-        multipliers: of an ElastoDyn table, in place of the file's.
-        offsets: whether the offset columns of a FAST 7 table are used.
+        multipliers: of mass, flapwise and edgewise stiffness: of a CSV, or of an ElastoDyn table in place of the file's.
+        offsets: whether the offset columns of a CSV or of a FAST 7 table are used.
     """
 
     beside: tuple[Path, ...] = ()

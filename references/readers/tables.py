@@ -33,9 +33,18 @@ def read(path: Path, asked: Asked) -> Stations:
     n = len(table)
     none, rigid = np.zeros(n), np.full(n, np.inf)
     s = columns["fraction"] * asked.length
+    by_mass, by_flap, by_edge = asked.multipliers or (1.0, 1.0, 1.0)
     stiffness = np.zeros((n, 6, 6))
-    values = (columns["EA"], rigid, rigid, columns["GJ"], columns["EI_flap"], columns["EI_edge"])
+    values = (
+        columns.get("EA", rigid),
+        rigid,
+        rigid,
+        columns.get("GJ", rigid),
+        by_flap * columns["EI_flap"],
+        by_edge * columns["EI_edge"],
+    )
     stiffness[:, range(6), range(6)] = sections.diagonal(*values)
-    m, ahead, about_y, about_z = (columns.get(name, none) for name in ("mass", "cg_edge", "I_flap", "I_edge"))
+    m, about_y, about_z = (by_mass * columns.get(name, none) for name in ("mass", "I_flap", "I_edge"))
+    ahead = columns.get("cg_edge", none) * asked.offsets
     mass = sections.mass(m, ahead, 0.0, about_z + m * ahead**2, about_y)
     return Stations(reader, s, stiffness, mass, np.radians(columns["twist"]), straight(s))

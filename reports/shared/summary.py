@@ -71,12 +71,12 @@ def status(run: Run) -> int:
     """Exit status of a run, see ``statuses``.
 
     A run passes if something was compared, nothing fails or is inconclusive, every blade is confirmed by as many groups
-    as required, and every seeded fault is detected.
+    as required, no second reading and no code's model contradicts the blade, and every seeded fault is detected.
     """
     if run.unfinished:
         return INCOMPLETE
     blind = any(control.missed for control in run.controls)
-    bad = any(c.verdict in BAD for c in run.cells)
+    bad = any(c.verdict in BAD for c in (*run.cells, *run.property_checks))
     return FAILED if not compared(run.cells) or blind or bad or short(run) else PASSED
 
 

@@ -9,6 +9,7 @@ from ...cases.judge.witnesses import INDEPENDENT, groups, short, witnesses
 from ..shared import summary
 from ..shared.summary import SYMBOL
 from ..shared.units import BY_KEY, RAD_S, Units
+from . import properties
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
     "measured data (neither confirm nor contradict)": lambda c: c.role == "measured",
@@ -49,9 +50,10 @@ def verdict(run: Run) -> str:
     counts = summary.counts(run.cells)
     missing = sum(_mute(c) for c in run.cells)
     lacking = f"{missing} answer{' is' if missing == 1 else 's are'} missing" if missing else ""
-    if wrong := counts["fail"] - missing:
-        contradict = "answer contradicts" if wrong == 1 else "answers contradict"
-        return f"No: {wrong} {contradict} {OWN}{f', and {lacking}' if lacking else ''}."
+    wrong = counts["fail"] - missing
+    contradict = f"{wrong} {'answer contradicts' if wrong == 1 else 'answers contradict'} {OWN}" if wrong else ""
+    if contradictions := [*properties.contradictions(run), *([contradict] if wrong else [])]:
+        return f"No: {', and '.join([*contradictions, *([lacking] if lacking else [])])}."
     unsure = counts["inconclusive"]
     missed = sum(control.missed for control in run.controls)
     alone = _unconfirmed(run)
@@ -108,8 +110,13 @@ def first(run: Run) -> list[str]:
     far = farthest(c for c in run.cells if (c.case, c.code) in independent)
     data = [line for line in (measured(run),) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
-        return [answer(run), *urgent(run), *data]
-    return [answer(run), f"Worst independent answer, relative to its target: {_shown(run, far)}.", *data]
+        return [answer(run), *properties.lines(run), *urgent(run), *data]
+    return [
+        answer(run),
+        *properties.lines(run),
+        f"Worst independent answer, relative to its target: {_shown(run, far)}.",
+        *data,
+    ]
 
 
 def measured(run: Run) -> str:

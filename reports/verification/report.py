@@ -17,7 +17,7 @@ from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, broad, columns
 from ..shared.units import BY_KEY, Units
-from . import case_tables, controls, diagnoses, error_budget, evidence, paper_table, witnesses
+from . import case_tables, controls, diagnoses, error_budget, evidence, paper_table, properties, witnesses
 
 FEW = 3
 """Number of cases whose figures take no longer to draw than other processes take to start."""
@@ -114,7 +114,8 @@ def _plainly(rows: list[dict[str, str]]) -> str:
 
 def headline(run: Run) -> list[str]:
     """The verdict in a few sentences, the worst first, without markup."""
-    lines = [summary.incomplete(run), evidence.answer(run), *evidence.urgent(run), evidence.measured(run)]
+    lines = [summary.incomplete(run), evidence.answer(run), *properties.lines(run), *evidence.urgent(run)]
+    lines.append(evidence.measured(run))
     if worst := summary.largest(c for c in run.cells if c.verdict == "pass"):
         lines.append(f"Largest difference among passes: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
     lines += [paper_table.line(run), witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
@@ -201,6 +202,8 @@ class Section:
     diagnoses: str
     error_budget: str
     error_budget_at: str
+    readings: str
+    models: str
 
 
 def section(run: Run, case: str, figures: list[str]) -> Section:
@@ -232,4 +235,6 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         diagnoses=_plainly(diagnoses.rows(run, case)),
         error_budget=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
         error_budget_at=error_budget.heading(run, case, unit),
+        readings=_plainly(properties.readings(run, case)),
+        models=_plainly(properties.models(run, case)),
     )

@@ -18,9 +18,9 @@ from ....core.blade import Blade, BladeError
 from .. import files
 from ..errors import CaseError
 from ..names import LONGEST, named
-from .source import Mount, Reading, Source, Unused
+from .source import BladeFile, Mount, Reading, Source, Unused
 
-__all__ = ["FORMATS", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
+__all__ = ["FORMATS", "BladeFile", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
 
 FORMATS = ("ElastoDyn", "BeamDyn", "OpenFAST .fst", "BModes", "HAWC2", "windIO", "Southwell TOML and CSV")
 

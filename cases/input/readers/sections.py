@@ -18,7 +18,7 @@ from ....core.blade import Blade, BladeError
 from ....core.blade_checks import MAX_LENGTH
 from .. import files
 from ..errors import CaseError, FilesMissingError
-from .source import Unused
+from .source import BladeFile, Reading, Unused
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -84,6 +84,14 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
             CaseError: if it cannot be read.
         """
         return self.blade(name, folder), ()
+
+    def file_read(self, name: str, folder: Path) -> BladeFile | None:
+        """The blade of its file as read, before the case changes it; None if no second reader can read the file.
+
+        Raises:
+            CaseError: if it cannot be read.
+        """
+        return None
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; implemented by each kind."""
@@ -202,6 +210,16 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
             FilesMissingError: if the variable of ``files`` is not set, or its folder does not contain the file.
             CaseError: if the reader raises it.
         """
+        file, unstated = self._read(name, folder)
+        blade = Reading(file.blade, file.source, unstated=unstated).mounted(file.path)
+        return self.mounted(replace(blade, name=name)), file.source.unused
+
+    def file_read(self, name: str, folder: Path) -> BladeFile:
+        """See ``Mounted``."""
+        return self._read(name, folder)[0]
+
+    def _read(self, name: str, folder: Path) -> tuple[BladeFile, tuple[str, ...]]:
+        """The file, and the names of the mounting that nothing states."""
         from . import reading  # imports this module
         from .source import Mount
 
@@ -218,7 +236,7 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         with files.reading_also(Path(named)) if named else nullcontext():
             path = self._path(name, folder)
             found = reading(path, mount)
-        return self.mounted(replace(found.mounted(path), name=name)), found.source.unused
+        return BladeFile(path, found.blade, found.source, mount), found.unstated
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, as ``read``."""

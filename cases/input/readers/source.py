@@ -94,6 +94,23 @@ class Reading:
 
 
 @dataclass(frozen=True)
+class BladeFile:
+    """A blade as read from a file, before a case changes it: what a second reading of the file is compared with.
+
+    Attributes:
+        path: the file that the user names.
+        blade: as read.
+        source: its origin.
+        mount: what the user states besides the file.
+    """
+
+    path: Path
+    blade: Blade
+    source: Source
+    mount: "Mount"
+
+
+@dataclass(frozen=True)
 class Mount:
     """Length and mounting of a blade, which its file may not contain. None: as in the files, else 0.
 

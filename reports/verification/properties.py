@@ -1,0 +1,88 @@
+"""The second reading of a blade's file and the mass and inertia of the codes' models, in words and tables."""
+
+from collections.abc import Iterable
+
+from ...cases.judge.results import PropertyCheck, Run
+from ...cases.judge.verdict import percent
+from ..shared.summary import SYMBOL
+
+
+def contradictions(run: Run) -> list[str]:
+    """What second readings and models contradict, in the words of the verdict; empty if nothing."""
+    out = []
+    readings = [c for c in run.property_checks if c.quantity == "reading" and c.verdict == "fail"]
+    if readings:
+        n = len(readings)
+        out.append(
+            f"{n} propert{'y' if n == 1 else 'ies'} of the blade differ{'s' * (n == 1)} in a second reading of its file"
+        )
+    models = _codes(c for c in run.property_checks if c.quantity == "fingerprint" and c.verdict == "fail")
+    if models:
+        out.append(f"the model of {', '.join(models)} does not weigh what the stations weigh")
+    return out
+
+
+def lines(run: Run) -> list[str]:
+    """Lines on failing properties, and on what was read a second time or could not be."""
+    out = [f"{_what(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict == "fail"]
+    readings = [c for c in run.property_checks if c.quantity == "reading"]
+    for case in dict.fromkeys(c.case for c in readings):
+        mine = [c for c in readings if c.case == case]
+        if all(c.verdict == "pass" for c in mine):
+            out.append(
+                f"Second reading: {mine[0].code} {mine[0].version} reads the same {len(mine)} properties ({case})."
+            )
+        elif mine[0].verdict == "not run":
+            out.append(f"Second reading: none: {mine[0].reason} ({case}).")
+    return out
+
+
+def _what(check: PropertyCheck) -> str:
+    return "Second reading" if check.quantity == "reading" else f"Model of {check.code}"
+
+
+def readings(run: Run, case: str) -> list[dict[str, str]]:
+    """One row for each property of the second reading."""
+    return [
+        {
+            "property": f"{c.part} [{c.unit}]" if c.part else "",
+            "largest difference": _size(c),
+            "verdict": f"{SYMBOL[c.verdict]} {c.reason or c.verdict}",
+        }
+        for c in run.property_checks
+        if c.case == case and c.quantity == "reading"
+    ]
+
+
+def models(run: Run, case: str) -> list[dict[str, str]]:
+    """One row for each code's model: the differences of mass, first moments and inertia."""
+    out = []
+    mine = [c for c in run.property_checks if c.case == case and c.quantity == "fingerprint"]
+    for code in _codes(mine):
+        checks = [c for c in mine if c.code == code]
+        by = {c.part: c for c in checks}
+        moments = [c for c in checks if c.part.startswith("first moment")]
+        verdict = "fail" if any(c.verdict == "fail" for c in checks) else checks[0].verdict
+        reason = next((c.reason for c in checks if c.verdict == verdict and c.reason), verdict)
+        out.append(
+            {
+                "model of": code,
+                "mass": _size(by.get("mass")),
+                "first moments": _size(max(moments, key=lambda c: abs(c.difference or 0.0), default=None)),
+                "inertia": _size(by.get("inertia about the rotor's axis")),
+                "verdict": f"{SYMBOL[verdict]} {reason}",
+            }
+        )
+    return out
+
+
+def _codes(checks: Iterable[PropertyCheck]) -> list[str]:
+    return list(dict.fromkeys(c.code for c in checks))
+
+
+def _size(check: PropertyCheck | None) -> str:
+    if check is None or not check.part:
+        return ""
+    if check.difference is None:
+        return "rigid in one only"
+    return percent(check.difference) if abs(check.difference) >= 1e-9 else "0"

@@ -1,0 +1,128 @@
+"""A run with a reader, a sampling or an adapter that is wrong ends with status 1 and names the property."""
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from southwell.cases.input import blades
+from southwell.cases.input.readers import Mount, elastodyn
+from southwell.cases.judge import results
+from southwell.cases.judge.results import Cell, PropertyCheck, Run
+from southwell.cases.plan.request import Execution, Request
+from southwell.cases.plan.subjects import subjects
+from southwell.cases.verify.pipeline import verify
+from southwell.references.protocol.description import describe
+from southwell.references.protocol.process import Limits
+from southwell.references.readers import openfast, stations
+from southwell.reports.shared import summary
+from southwell.reports.shared.statuses import FAILED, PASSED
+from southwell.reports.verification import evidence, properties
+
+from ...support import decks
+
+pytest.importorskip("weio")
+
+PASS = Cell(
+    *("elastodyn_main", 1.0, 1, "flapwise", "a-code", "1", "code", 5.0, 5.0, 0.0, 1e-9, 1e-3, "pass"),
+    shares="nothing",
+    ordinal=1,
+)
+
+
+def checked(deck: Path, codes: Sequence[str] = (), **options: Any) -> Run:
+    """A run of one passing cell with the checks of the properties of a deck."""
+    (subject,) = subjects(Request((str(deck),), rpm="10", **options), lambda _: None)
+    assert subject.blade is not None
+    found = subject.property_checks(describe(list(codes), [subject.blade]), Limits())
+    rows = [*found.rows, *(row for task in found.tasks for row in task())]
+    return Run((PASS,), property_checks=tuple(rows))
+
+
+@pytest.fixture
+def deck(tmp_path: Path) -> Path:
+    decks.openfast(tmp_path)
+    return tmp_path / "elastodyn_main.dat"
+
+
+def exchange(patch: pytest.MonkeyPatch) -> None:
+    made = elastodyn.section_stiffness
+    patch.setattr(elastodyn, "section_stiffness", lambda EA, GJ, flap, edge: made(EA, GJ, edge, flap))
+
+
+def test_a_right_reader_is_confirmed(deck: Path, tmp_path: Path) -> None:
+    found = checked(deck, ["exudyn-tree"])
+    assert {c.quantity for c in found.property_checks} == {"reading", "fingerprint"}
+    assert {c.verdict for c in found.property_checks} == {"pass"}
+    assert summary.status(found) == PASSED
+    (line,) = properties.lines(found)
+    assert line.startswith("Second reading: weio 2.0.0 reads the same 18 properties")
+    case = found.property_checks[0].case
+    assert len(properties.readings(found, case)) == 18
+    assert [row["model of"] for row in properties.models(found, case)] == ["core", "exudyn-tree"]
+    results.write(tmp_path / "results.jsonl", found)
+    assert results.read(tmp_path / "results.jsonl").property_checks == found.property_checks
+
+
+def test_exchanged_stiffnesses_end_a_run_with_status_1_by_name(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    exchange(monkeypatch)
+    found = checked(deck)
+    assert summary.status(found) == FAILED
+    assert evidence.verdict(found) == "No: 2 properties of the blade differ in a second reading of its file."
+    assert [line.partition(" at station")[0] for line in properties.lines(found)[:2]] == [
+        "Second reading: flapwise stiffness",
+        "Second reading: edgewise stiffness",
+    ]
+
+
+@pytest.mark.slow
+def test_every_cell_passes_with_exchanged_stiffnesses(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The whole command: no code sees the exchange, because all of them take the blade from the reader."""
+    exchange(monkeypatch)
+    execution = Execution(threads=True, fresh=True)
+    found = verify(Request((str(deck),), ("exudyn-tree",), rpm="10", faults="none", execution=execution))
+    assert {c.verdict for c in found.cells} == {"pass"}
+    assert summary.status(found) == FAILED
+    assert {c.part for c in found.property_checks if c.verdict == "fail"} == {
+        "flapwise stiffness",
+        "edgewise stiffness",
+    }
+    assert {c.code for c in found.property_checks if c.quantity == "fingerprint"} == {"core", "exudyn-tree"}
+
+
+def test_a_blade_changed_by_the_user_is_not_compared_with_its_file(deck: Path) -> None:
+    found = checked(deck, changes=("EI_flap=*1.1",))
+    assert {(c.quantity, c.verdict) for c in found.property_checks} == {("fingerprint", "pass")}
+
+
+def test_without_a_parser_the_row_says_how_to_install_it(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    def absent(distribution: str, _: object) -> None:
+        raise stations.NotInstalledError(f"{distribution} is not installed: {stations.HINT}")
+
+    monkeypatch.setattr(openfast, "parser", absent)
+    found = checked(deck)
+    (row,) = (c for c in found.property_checks if c.quantity == "reading")
+    assert (row.verdict, row.reason) == ("not run", f"weio is not installed: {stations.HINT}")
+    assert properties.lines(found)[0].startswith("Second reading: none: weio is not installed")
+    assert summary.status(found) == PASSED
+
+
+def test_a_csv_is_read_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    offset = blades.offset
+    monkeypatch.setattr(blades, "offset", lambda mass, ahead: offset(mass, -ahead))
+    found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
+    wrong = [c for c in found.property_checks if c.verdict == "fail"]
+    assert {c.part for c in wrong if c.quantity == "reading"} == {"first moments of mass"}
+    assert {c.code for c in wrong if c.quantity == "fingerprint"} == {"core", "scikit-fem-reissner"}
+    assert "the model of core, scikit-fem-reissner does not weigh what the stations weigh" in evidence.verdict(found)
+
+
+def test_a_code_that_reports_nothing_says_so(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from southwell.cases.solve import properties as tasks
+
+    monkeypatch.setattr(tasks, "fingerprints", lambda *_: [None])
+    found = checked(deck, ["exudyn-tree"])
+    rows = [c for c in found.property_checks if c.code == "exudyn-tree"]
+    assert [(c.verdict, c.reason) for c in rows] == [("not applicable", "the code reports no mass")]
+    assert isinstance(rows[0], PropertyCheck)
