@@ -36,9 +36,9 @@ from ..campbell import page
 from ..campbell import tables as tables
 from ..campbell.cover import Origin
 from ..campbell.tables import Sheet
-from ..shared import html as as_html
+from ..documents import html as as_html
+from ..documents import pdf as as_pdf
 from ..shared import not_used
-from ..shared import pdf as as_pdf
 from ..shared.console import output
 from ..shared.paths import file_name
 from ..shared.units import RPM, Units

@@ -15,7 +15,7 @@ from ...cases.input.writing import writable
 from ..campbell import machine as pages
 from ..campbell import tables
 from ..campbell.cover import Origin
-from ..shared import html as as_html
+from ..documents import html as as_html
 from ..shared import not_used
 from ..shared.console import output
 from ..shared.units import RPM, Units

@@ -7,7 +7,7 @@ from ...cases.regression import history
 from ...cases.regression.gate import compare
 from ..ci import gate_text
 from ..dashboard.write import write as write_dashboard
-from ..shared import html
+from ..documents import html
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..shared.units import BY_KEY
 from ..verification import brief
@@ -53,7 +53,7 @@ def command(
             written.append(html.write(report))
         written.append(html.write(written[0]))
         if find_spec("typst"):
-            from ..shared import pdf
+            from ..documents import pdf
 
             written.append(pdf.write(written[0]))
         written.append(write_dashboard({folder.name or RESULTS: run}, None, folder / DASHBOARD))

@@ -26,7 +26,7 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
         Also write report.pdf; requires the extra `pdf` (Typst).
     """
     if pdf:
-        from ..shared import pdf as paper
+        from ..documents import pdf as paper
 
         paper.require()
     run = found(folder if folder.is_dir() else folder / RESULTS)
@@ -35,11 +35,11 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
     if written is None:
         return INCOMPLETE
     if html:
-        from ..shared import html as page
+        from ..documents import html as page
 
         print(page.write(written))
     if pdf:
-        from ..shared import pdf as paper
+        from ..documents import pdf as paper
 
         print(paper.write(written))
     return INCOMPLETE if run.unfinished else PASSED

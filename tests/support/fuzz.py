@@ -359,7 +359,8 @@ def _shown(run, folder: Path) -> None:
     from southwell.reports.ci import junit
     from southwell.reports.cli import report
     from southwell.reports.dashboard import data
-    from southwell.reports.shared import html, pdf, summary
+    from southwell.reports.documents import html, pdf
+    from southwell.reports.shared import summary
     from southwell.reports.shared.log_safe import LogSafe
     from southwell.reports.verification import report as matrix_report
 

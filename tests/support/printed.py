@@ -6,7 +6,7 @@ from typing import Any
 
 import pytest
 
-from southwell.reports.shared import document, pdf
+from southwell.reports.documents import document, pdf
 
 pytest.importorskip("typst")
 pypdf = pytest.importorskip("pypdf")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from southwell.cases.judge.results import RESULTS, Origin, Run, Setting, write
-from southwell.reports.shared import pdf
+from southwell.reports.documents import pdf
 from southwell.reports.verification import brief
 
 from ...support import samples

@@ -10,7 +10,8 @@ import pytest
 from markdown_it import MarkdownIt
 
 from southwell.cases.judge.results import Cell, Control, Origin, Run, Setting, read, write
-from southwell.reports.shared import document, html, print_nodes, summary
+from southwell.reports.documents import document, html, print_nodes
+from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain
 from southwell.reports.verification import evidence, paper_table
 from southwell.reports.verification import report as matrix_report

@@ -9,7 +9,8 @@ from typing import cast
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...references.protocol.interface import extra
-from . import colours, columns, document, print_nodes
+from ..shared import colours
+from . import columns, document, print_nodes
 
 
 class PdfError(CaseError):

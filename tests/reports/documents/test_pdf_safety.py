@@ -8,12 +8,12 @@ import pytest
 from matplotlib.figure import Figure
 
 from southwell.cases.judge.results import Setting
-from southwell.reports.shared import pdf
+from southwell.reports.documents import pdf
 from southwell.reports.verification import report as matrix_report
 
 from ...support import samples
 from ...support.printed import missing, read, rendered, words
-from .test_markdown import HOSTILE
+from ..verification.test_markdown import HOSTILE
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="{0}pt" height="{1}pt"><text x="5" y="20">{2}</text></svg>'
 

@@ -13,11 +13,12 @@ import pytest
 
 from southwell.cases.judge.results import Setting, write
 from southwell.reports.cli import arguments
-from southwell.reports.shared import colours, html, summary
+from southwell.reports.documents import html
+from southwell.reports.shared import colours, summary
 from southwell.reports.verification import report as matrix_report
 
 from ...support import browsers, samples
-from .test_markdown import HOSTILE
+from ..verification.test_markdown import HOSTILE
 
 
 class Page(HTMLParser):

@@ -12,7 +12,8 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.results import write
 from southwell.reports.cli import arguments
 from southwell.reports.cli import report as command
-from southwell.reports.shared import colours, columns, document, pdf, print_nodes
+from southwell.reports.documents import columns, document, pdf, print_nodes
+from southwell.reports.shared import colours
 from southwell.reports.verification import report as matrix_report
 
 from ...support import samples

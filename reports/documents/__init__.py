@@ -1,0 +1,1 @@
+"""A report in Markdown as a web page and as a PDF."""
