@@ -31,10 +31,20 @@ ONE_BLADE, VERIFY, OTHER, CI, LAST = (
 )
 
 COMMANDS = (
-    (ONE_BLADE, "campbell", "cli.campbell:command", "Compute the Campbell diagram of a blade and judge its margins."),
-    (ONE_BLADE, "modes", "cli.modes:modes", "Compute the natural frequencies of a blade and name its modes."),
-    (ONE_BLADE, "show", "cli.show:command", "Show the mass, sections and axes of a blade, and how its file was read."),
-    (ONE_BLADE, "convert", "cli.convert:command", "Write a blade in another format."),
+    (
+        ONE_BLADE,
+        "campbell",
+        "cli.blade.campbell:command",
+        "Compute the Campbell diagram of a blade and judge its margins.",
+    ),
+    (ONE_BLADE, "modes", "cli.blade.modes:modes", "Compute the natural frequencies of a blade and name its modes."),
+    (
+        ONE_BLADE,
+        "show",
+        "cli.blade.show:command",
+        "Show the mass, sections and axes of a blade, and how its file was read.",
+    ),
+    (ONE_BLADE, "convert", "cli.blade.convert:command", "Write a blade in another format."),
     (VERIFY, "verify", "cli.verify:command", "Solve blades with every code, compare the results and write a report."),
     (VERIFY, "report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
     (VERIFY, "pages", "cli.pages:command", "Write a run as HTML, dashboard, and a summary on two pages."),
@@ -53,10 +63,15 @@ COMMANDS = (
         "Compare models of measured rotors with their measurements.",
     ),
     (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),
-    (ONE_BLADE, "study", "cli.study:command", "Solve sampled variants of blades at many speeds."),
-    (OTHER, "mechanism", "cli.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
+    (ONE_BLADE, "study", "cli.blade.study:command", "Solve sampled variants of blades at many speeds."),
+    (OTHER, "mechanism", "cli.blade.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
     (OTHER, "judge", "cli.judge:command", "Judge linearisations of OpenFAST: find their defects and name their modes."),
-    (OTHER, "condense", "cli.condense:command", "Condense finite element matrices of a blade to a multibody model."),
+    (
+        OTHER,
+        "condense",
+        "cli.blade.condense:command",
+        "Condense finite element matrices of a blade to a multibody model.",
+    ),
     (CI, "gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
     (CI, "history", "cli.history:app", "Record the results of runs by commit."),
     (CI, "dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),

@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from southwell.cases.campbell.required import required_margin
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.schema import speed_range
-from southwell.reports.cli.campbell_options import margin
 from southwell.tests.support.blade_files import assert_same
 
 from ...reports.cli.test_cli import southwell
@@ -142,13 +142,13 @@ def test_bad_lists_of_speeds(text: str) -> None:
     ("text", "value"), [("10", 0.1), ("10%", 0.1), ("0.1", 0.1), ("1", 0.01), ("0.5%", 0.005), ("0", 0.0)]
 )
 def test_margins(text: str, value: float) -> None:
-    assert margin(text) == pytest.approx(value)
+    assert required_margin(text).value == pytest.approx(value)
 
 
 @pytest.mark.parametrize("text", ["100", "100%", "-1", "ten"])
 def test_bad_margins(text: str) -> None:
-    with pytest.raises(CaseError, match=r"--margin: .*10% or 0\.1"):
-        margin(text)
+    with pytest.raises(CaseError, match=r"--margin: .*10%(,| or) 0\.1"):
+        required_margin(text, "--margin")
 
 
 CABLE = """

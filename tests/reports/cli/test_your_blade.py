@@ -12,7 +12,7 @@ from southwell.cases.campbell.tracked import TrackedMode
 from southwell.cases.judge import results
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
-from southwell.reports.cli import show
+from southwell.reports.cli.blade import show
 from southwell.reports.shared.units import RPM
 from southwell.reports.verification import terminal
 

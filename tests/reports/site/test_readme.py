@@ -141,7 +141,7 @@ def test_the_commands_of_the_readme_are_commands() -> None:
     lines = [line[2:] for b in blocks("console") for line in b.splitlines() if line.startswith("$ southwell ")]
     assert lines == [readme.COMMAND]
     command, *_ = cli.app.parse_args(shlex.split(readme.COMMAND)[1:], exit_on_error=False, print_error=False)
-    assert command.__module__.endswith("cli.campbell")
+    assert command.__module__.endswith("cli.blade.campbell")
 
 
 def test_targets_of_make_in_the_readme_are_in_the_makefile() -> None:

@@ -14,42 +14,41 @@ from cyclopts import Parameter
 from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
 
-from ...cases.campbell import confirmation, interpolation
-from ...cases.campbell.changes import changes as blade_changes
-from ...cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
-from ...cases.campbell.machine import MachineRequest
-from ...cases.campbell.required import required_margin
-from ...cases.campbell.tracking import Solver
-from ...cases.input.changes import parse
-from ...cases.input.default_case import default_case
-from ...cases.input.errors import CaseError
-from ...cases.input.writing import writable
-from ...cases.plan import measurements
-from ...cases.plan.request import Execution, Request
-from ...cases.run.executors import Processes
-from ...cases.verify import pipeline
-from ...core.blade import Blade
-from ...core.modes import Modes
-from ..campbell import changes as changes_table
-from ..campbell import confirmation as confirmation_table
-from ..campbell import page
-from ..campbell import tables as tables
-from ..campbell.cover import Origin
-from ..campbell.tables import Sheet
-from ..documents import html as as_html
-from ..documents import pdf as as_pdf
-from ..shared import not_used
-from ..shared.console import output
-from ..shared.paths import file_name
-from ..shared.units import RPM, Units
+from ....cases.campbell import confirmation, interpolation
+from ....cases.campbell.changes import changes as blade_changes
+from ....cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
+from ....cases.campbell.machine import MachineRequest
+from ....cases.campbell.required import required_margin
+from ....cases.campbell.tracking import Solver
+from ....cases.input.changes import parse
+from ....cases.input.default_case import default_case
+from ....cases.input.errors import CaseError
+from ....cases.input.writing import writable
+from ....cases.plan import measurements
+from ....cases.plan.request import Execution, Request
+from ....cases.run.executors import Processes
+from ....cases.verify import pipeline
+from ....core.blade import Blade
+from ....core.modes import Modes
+from ...campbell import changes as changes_table
+from ...campbell import confirmation as confirmation_table
+from ...campbell import page, tables
+from ...campbell.cover import Origin
+from ...campbell.tables import Sheet
+from ...documents import html as as_html
+from ...documents import pdf as as_pdf
+from ...shared import not_used
+from ...shared.console import output
+from ...shared.paths import file_name
+from ...shared.units import RPM, Units
+from ..arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
+from ..errors import UsageError
+from ..mounting import Mounting
+from ..verify_output import Progressing
 from . import campbell_machine
 from . import campbell_options as options
-from .arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
-from .errors import UsageError
-from .mounting import Mounting
 from .subjects import Subject, changed, single
 from .subjects import subjects as find_subjects
-from .verify_output import Progressing
 
 
 def command(

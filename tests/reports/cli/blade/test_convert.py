@@ -9,9 +9,9 @@ from southwell.cases.input import library, readers
 from southwell.cases.input.readers import Mount
 from southwell.tests.support.blade_files import assert_same
 
-from .test_cli import southwell
+from ..test_cli import southwell
 
-DATA = Path(__file__).parents[2] / "data" / "blades"
+DATA = Path(__file__).parents[3] / "data" / "blades"
 
 
 @pytest.mark.parametrize("file", ["elastodyn_main.dat", "beamdyn_main.dat", "bmodes.bmi", "hawc2.htc"])

@@ -12,7 +12,7 @@ from southwell.reports.campbell import span
 from southwell.reports.cli import app as cli
 from southwell.tests.support.blade_files import real
 
-DATA = Path(__file__).parents[2] / "data" / "blades"
+DATA = Path(__file__).parents[3] / "data" / "blades"
 BEAM = """name = "beam"
 [blade]
 kind = "beam"

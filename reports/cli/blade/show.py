@@ -12,15 +12,15 @@ from rich.console import Group
 from rich.markup import escape
 from rich.table import Table
 
-from ...cases.input import atomic
-from ...cases.input.properties import sections
-from ...cases.input.writing import writable
-from ...core.blade import Blade
-from ..campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
-from ..shared import not_used
-from ..shared.console import output
-from ..shared.paths import file_name
-from .mounting import Mounting
+from ....cases.input import atomic
+from ....cases.input.properties import sections
+from ....cases.input.writing import writable
+from ....core.blade import Blade
+from ...campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
+from ...shared import not_used
+from ...shared.console import output
+from ...shared.paths import file_name
+from ..mounting import Mounting
 from .subjects import subjects as find_subjects
 
 Array = NDArray[np.float64]
@@ -98,7 +98,7 @@ def _table(values: Array, columns: Sequence[int]) -> Table:
 
 def write(blade: Blade, folder: Path) -> list[Path]:
     """Write the figure (SVG, PNG) and the table of all stations (CSV); return the paths."""
-    from ..campbell import span  # not at the top: the figures take half of the start-up time
+    from ...campbell import span  # not at the top: the figures take half of the start-up time
 
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "stations.csv"

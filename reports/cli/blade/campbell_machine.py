@@ -6,19 +6,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ...cases.campbell.machine import MachineRequest, machine_diagram
-from ...cases.input import files
-from ...cases.input.errors import CaseError
-from ...cases.input.readers import turbine as reader
-from ...cases.input.readers.source import Mount
-from ...cases.input.writing import writable
-from ..campbell import machine as pages
-from ..campbell import tables
-from ..campbell.cover import Origin
-from ..documents import html as as_html
-from ..shared import not_used
-from ..shared.console import output
-from ..shared.units import RPM, Units
+from ....cases.campbell.machine import MachineRequest, machine_diagram
+from ....cases.input import files
+from ....cases.input.errors import CaseError
+from ....cases.input.readers import turbine as reader
+from ....cases.input.readers.source import Mount
+from ....cases.input.writing import writable
+from ...campbell import machine as pages
+from ...campbell import tables
+from ...campbell.cover import Origin
+from ...documents import html as as_html
+from ...shared import not_used
+from ...shared.console import output
+from ...shared.units import RPM, Units
 
 SPEEDS = 31
 """Number of speeds by default."""

@@ -4,14 +4,14 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from ...cases.input import changes, readers
-from ...cases.input.changes import Change
-from ...cases.input.errors import CaseError
-from ...cases.input.library import is_blade_file, select
-from ...cases.input.readers import Mount, Unused
-from ...cases.plan.settings import settings
-from ...core.blade import Blade
-from ..shared.units import BY_KEY, RPM, Units
+from ....cases.input import changes, readers
+from ....cases.input.changes import Change
+from ....cases.input.errors import CaseError
+from ....cases.input.library import is_blade_file, select
+from ....cases.input.readers import Mount, Unused
+from ....cases.plan.settings import settings
+from ....core.blade import Blade
+from ...shared.units import BY_KEY, RPM, Units
 
 FACTS = (
     "length",

@@ -7,17 +7,17 @@ from typing import Annotated
 
 from cyclopts import Parameter
 
-from ...cases.condense import condensed, condensing
-from ...cases.condense.condensed import Condensed
-from ...cases.input import atomic
-from ...cases.input.errors import CaseError
-from ...cases.input.writing import writable
-from ..condense import page
-from ..shared.console import output
-from ..shared.statuses import PASSED
-from ..shared.units import RAD_S
+from ....cases.condense import condensed, condensing
+from ....cases.condense.condensed import Condensed
+from ....cases.input import atomic
+from ....cases.input.errors import CaseError
+from ....cases.input.writing import writable
+from ...condense import page
+from ...shared.console import output
+from ...shared.statuses import PASSED
+from ...shared.units import RAD_S
+from ..arguments import NumberOfModes
 from . import campbell_options
-from .arguments import NumberOfModes
 
 FILE, SEGMENTS = page.FILE, "segments.json"
 

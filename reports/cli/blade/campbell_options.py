@@ -4,12 +4,12 @@ from collections.abc import Sequence
 from math import inf
 from pathlib import Path
 
-from ...cases.campbell import prestress
-from ...cases.input.errors import CaseError
-from ...cases.plan import request
-from ...core.blade import Blade
-from ..shared.units import RAD_S, RPM, Units
-from .mounting import angle
+from ....cases.campbell import prestress
+from ....cases.input.errors import CaseError
+from ....cases.plan import request
+from ....core.blade import Blade
+from ...shared.units import RAD_S, RPM, Units
+from ..mounting import angle
 
 MOST_PER_REV = 1000
 """Largest order n per revolution."""

@@ -12,12 +12,12 @@ import pytest
 from southwell.cases.campbell.prestress import LOAD, STANDARD_GRAVITY
 from southwell.cases.input import library
 from southwell.core.solve import modes
-from southwell.reports.cli import campbell_options
-from southwell.reports.cli.campbell import SpeedProgress
+from southwell.reports.cli.blade import campbell_options
+from southwell.reports.cli.blade.campbell import SpeedProgress
 from southwell.reports.shared.certain import certain
 from southwell.reports.shared.units import RPM
 
-from .test_cli import BEAM, southwell
+from ..test_cli import BEAM, southwell
 
 
 @pytest.fixture
@@ -337,7 +337,7 @@ def test_the_report_of_one_blade_is_one_file(beam: Path, tmp_path: Path, capsys:
 @pytest.mark.slow
 def test_every_table_of_the_page_is_in_the_pdf(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """With all sections that the page can have."""
-    from ...support import printed
+    from ....support import printed
 
     points = tmp_path / "rig.csv"
     points.write_text("speed [rpm],measured [Hz],mode\n100,9.9,1\n")

@@ -6,27 +6,27 @@ import msgspec
 import numpy as np
 from rich.console import Console
 
-from ...cases.campbell import interpolation
-from ...cases.campbell.changes import changes as blade_changes
-from ...cases.campbell.diagram import CampbellRequest
-from ...cases.campbell.sweep import Named
-from ...cases.campbell.tracked import TrackedMode, tracked
-from ...cases.input import library
-from ...cases.input.changes import parse
-from ...cases.input.schema import speed_range
-from ..campbell import changes as changes_table
-from ..campbell import tables
-from ..shared import not_used
-from ..shared.certain import NUMERICAL, remarks
-from ..shared.console import output
-from ..shared.statuses import PASSED
-from ..shared.units import RAD_S, RPM, Units
-from ..verification import terminal
+from ....cases.campbell import interpolation
+from ....cases.campbell.changes import changes as blade_changes
+from ....cases.campbell.diagram import CampbellRequest
+from ....cases.campbell.sweep import Named
+from ....cases.campbell.tracked import TrackedMode, tracked
+from ....cases.input import library
+from ....cases.input.changes import parse
+from ....cases.input.schema import speed_range
+from ...campbell import changes as changes_table
+from ...campbell import tables
+from ...shared import not_used
+from ...shared.certain import NUMERICAL, remarks
+from ...shared.console import output
+from ...shared.statuses import PASSED
+from ...shared.units import RAD_S, RPM, Units
+from ...verification import terminal
+from ..arguments import Accuracy, Changes, Elements, NumberOfModes
+from ..errors import UsageError
+from ..mounting import Mounting
 from . import mechanism_text as answer
 from . import subjects
-from .arguments import Accuracy, Changes, Elements, NumberOfModes
-from .errors import UsageError
-from .mounting import Mounting
 
 
 def modes(

@@ -8,14 +8,14 @@ from typing import Literal
 import numpy as np
 from rich.markup import escape
 
-from ...cases.input.errors import CaseError
-from ...cases.input.readers import Mount, Unused, southwell_toml
-from ...cases.input.writing import writable
-from ...cases.writers import beamdyn, elastodyn
-from ..shared import not_used
-from ..shared.console import output
-from ..shared.units import RPM
-from .mounting import Mounting
+from ....cases.input.errors import CaseError
+from ....cases.input.readers import Mount, Unused, southwell_toml
+from ....cases.input.writing import writable
+from ....cases.writers import beamdyn, elastodyn
+from ...shared import not_used
+from ...shared.console import output
+from ...shared.units import RPM
+from ..mounting import Mounting
 from .subjects import Subject
 from .subjects import subjects as find_subjects
 

@@ -7,9 +7,9 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-from ...core.element.measures import LARGE_STRAIN
-from ...core.multibody import Solution
-from ..shared.certain import certain, relative
+from ....core.element.measures import LARGE_STRAIN
+from ....core.multibody import Solution
+from ...shared.certain import certain, relative
 
 ROTATIONS = (".rx", ".ry", ".rz")
 

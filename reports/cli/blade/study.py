@@ -8,23 +8,23 @@ from typing import Annotated
 from cyclopts import Parameter
 from msgspec import UNSET
 
-from ...cases.input.writing import writable
-from ...cases.run.executors import executor
-from ...cases.study import parquet
-from ...cases.study.journal import JournalError, StudyJournal, read
-from ...cases.study.plan import Header, header
-from ...cases.study.run import run
-from ...cases.study.schema import Study
-from ...cases.study.schema import read as read_study
-from ...cases.study.statistics import Outcome, outcome, spreads
-from ..campbell import tables
-from ..campbell.tables import Sheet
-from ..shared import not_used
-from ..shared.console import Counter, output
-from ..shared.statuses import FAILED, INCOMPLETE, INTERRUPTED, PASSED
-from ..shared.units import RAD_S, RPM
-from .arguments import Workers, cluster_workers
-from .errors import UsageError
+from ....cases.input.writing import writable
+from ....cases.run.executors import executor
+from ....cases.study import parquet
+from ....cases.study.journal import JournalError, StudyJournal, read
+from ....cases.study.plan import Header, header
+from ....cases.study.run import run
+from ....cases.study.schema import Study
+from ....cases.study.schema import read as read_study
+from ....cases.study.statistics import Outcome, outcome, spreads
+from ...campbell import tables
+from ...campbell.tables import Sheet
+from ...shared import not_used
+from ...shared.console import Counter, output
+from ...shared.statuses import FAILED, INCOMPLETE, INTERRUPTED, PASSED
+from ...shared.units import RAD_S, RPM
+from ..arguments import Workers, cluster_workers
+from ..errors import UsageError
 
 SUFFIX = ".jsonl"
 

@@ -9,7 +9,7 @@ import pytest
 from southwell.reports.cli import app as cli
 from southwell.reports.shared import console
 
-from ...support.studies import lines, text
+from ....support.studies import lines, text
 
 
 @pytest.fixture(autouse=True)
@@ -148,7 +148,7 @@ def test_an_error_of_the_options_is_one_line(options: list[str], said: str, caps
 def test_a_blade_file_is_in_the_folder_of_the_study(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
     inner = folder / "inner"
     inner.mkdir()
-    deck = Path(__file__).parents[3] / "examples" / "nrel-5mw-blade.dat"
+    deck = Path(__file__).parents[4] / "examples" / "nrel-5mw-blade.dat"
     (inner / "blade.dat").write_bytes(deck.read_bytes())
     table = '{ file = "blade.dat", length = 61.5, hub_radius = 1.5 }'
     (inner / "study.toml").write_text(

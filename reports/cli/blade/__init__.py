@@ -1,0 +1,1 @@
+"""The commands on one blade: its modes, diagram, properties, conversion, condensation and variation."""
