@@ -35,7 +35,7 @@ COMMANDS = (
         ONE_BLADE,
         "campbell",
         "cli.blade.campbell:command",
-        "Compute the Campbell diagram of a blade and judge its margins.",
+        "Compute the Campbell diagram of a blade or a turbine and judge its margins.",
     ),
     (ONE_BLADE, "modes", "cli.blade.modes:modes", "Compute the natural frequencies of a blade and name its modes."),
     (
