@@ -36,6 +36,7 @@ from .element.measures import LARGEST_STRAIN
 from .mechanism.description import Beam, Body, CoordinateSpring, Load, Mechanism, MechanismError, Spring, inertia
 from .mechanism.joints import Joint, at
 from .mechanism.motion import Harmonic, Motion, Sum
+from .rotor.equal_blades import EXACT, turning, whirling
 from .spectrum.eigen import Damped, Eigen
 from .spectrum.modal import Linearization, linearize, modes
 from .spectrum.rounding import rounding
@@ -93,8 +94,11 @@ class Solution:
     def uncertainty(self) -> Array:
         """(m,) uncertainty due to rounding: relative for frequencies, absolute for damping ratios (see ``rounding``).
 
-        Computed at the first access, which takes as long as the modes.
+        Computed at the first access, which takes as long as the modes. For a rotor with equal blades, it is the largest
+        variation with the azimuth that counts as none.
         """
+        if turning(self.linear.tree.mechanism):
+            return np.full(len(self.values), EXACT)
         return rounding(self.linear, self.eigenpairs)
 
     @property
@@ -132,6 +136,9 @@ def solve(
 ) -> Solution:
     """Find the steady state of a mechanism and its modes about it.
 
+    With ``equal_blades``, a rotor that turns on a support is solved in multi-blade coordinates: frequencies are in the ground's
+    frame, and ``shapes`` are the motions at the azimuth 0.
+
     Args:
         mechanism: the mechanism.
         guess: coordinates to start from, by name; others start at 0.
@@ -145,14 +152,19 @@ def solve(
             strains; the message gives the cause.
         EigenError: if the eigenvalue solver fails.
     """
-    linear = linearize(mechanism, guess, independent, time)
+    rotor = turning(mechanism)
+    if rotor:
+        linear, eigenpairs = whirling(mechanism, rotor, guess, count)
+    else:
+        linear = linearize(mechanism, guess, independent, time)
+        eigenpairs = None
     strain = largest_strain(linear.tree, linear.state)
     if strain > LARGEST_STRAIN and not allow_large_strain:
         raise MechanismError(
             f"beams: steady strain {strain:.0%}: too large for linear elastic sections: loads or speeds are too high or a beam "
             "too soft; check units, or allow large strains"
         )
-    eigenpairs = modes(linear, count)
+    eigenpairs = eigenpairs or modes(linear, count)
     values: Complex = np.asarray(
         eigenpairs.values if isinstance(eigenpairs, Damped) else 1j * eigenpairs.frequencies, np.complex128
     )

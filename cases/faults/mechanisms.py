@@ -6,7 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ...core import multibody
 from ...core.mechanism.description import Mechanism, inertia
+from ...core.rotor import multiblade
 from ...core.spectrum import modal
 from ...core.steady import periodic
 from ...core.tree.linearization import Linearization
@@ -31,6 +33,8 @@ THICK = inertia(30.0, (20.0, 45.0, 30.0), (2.0, -0.02, 0.0))
 def _thick(m: Mechanism) -> Mechanism:
     return replace(m, bodies=tuple(replace(b, inertia=THICK) if b.name == "blade" else b for b in m.bodies))
 
+
+WHIRLING = Trial("coleman-feingold", (1.6,), ("pinocchio-loops",))
 
 SPINNING = replace(ASKED, altered=_thick)
 """A blade so thick that gyroscopic forces couple flap and pitch."""
@@ -86,6 +90,28 @@ def _still(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, motions=tuple(replace(m, rate=0.0) for m in mechanism.motions))
 
 
+def _backwards(mechanism: Mechanism) -> Mechanism:
+    return replace(mechanism, equal_blades=tuple(group[::-1] for group in mechanism.equal_blades))
+
+
+def _not_gyroscopic(right: Any) -> Any:
+    """Multi-blade coordinates without the term 2 Ω M R."""
+
+    def wrong(M: Any, C: Any, K: Any, psi: Any, omega: float, blades: Any) -> Any:
+        mass, damping, stiffness = right(M, C, K, psi, omega, blades)
+        return mass, damping - 2.0 * omega * mass @ blades.rate(), stiffness
+
+    return wrong
+
+
+def _frozen(right: Any) -> Any:
+    return lambda mechanism: None
+
+
+def _unchecked(right: Any) -> Any:
+    return lambda linear: None
+
+
 def _exchanged(modes: MechanismModes) -> MechanismModes:
     return replace(modes, shapes=modes.shapes[::-1])
 
@@ -117,6 +143,12 @@ FAULTS = (
           ((mechanism, "answers", _given(_open)),), ASKED),
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
           ((mechanism, "answers", _given(_still)),), ASKED),
+    Fault("rotor: frozen azimuth", "core", "a rotor on a support is linearised at one azimuth", "31 %",
+          ((multibody, "turning", _frozen), (periodic, "check", _unchecked)), WHIRLING),
+    Fault("rotor: transformation", "core", "multi-blade coordinates lack their gyroscopic term", "factors",
+          ((multiblade, "second_order", _not_gyroscopic),), WHIRLING),
+    Fault("rotor: blades backwards", "adapter", "blades are numbered against the rotation", "no answer",
+          ((mechanism, "answers", _given(_backwards)),), WHIRLING),
     Fault("mechanism: paired by number", "pairing", "modes are paired by their number", "a wrong shape counts",
           ((same, "pair", _by_number),), blinds="mechanism: mixed shapes"),
     Fault("mechanism: mixed shapes", "adapter", "every shape is a mixture of two", "MAC 0.5",

@@ -166,6 +166,10 @@ class MechanismFile(Struct, frozen=True, forbid_unknown_fields=True):
     rotor: Annotated[
         str, Meta(description="joint.coordinate that rotates at the rotor speed, if the speed is varied")
     ] = ""
+    equal_blades: Annotated[
+        tuple[tuple[str, ...], ...],
+        Meta(description="joint.coordinate of each of at least three equal blades, in the order of their azimuths"),
+    ] = ()
     speeds: Speeds | None = None
     compare: Compare | None = None
     closed_form: ClosedForm | None = None

@@ -100,6 +100,7 @@ def decode(data: Mapping[str, Any], path: str) -> Described:
         ),
         beams=(*_bushings(text, path), *_beams(text, path)),
         gravity=text.gravity,
+        equal_blades=text.equal_blades,
     )
     guess = {f"{joint}.{name}": value for joint, rows in text.guess.items() for name, value in rows.items()}
     _check_names(text, mechanism, guess, path)

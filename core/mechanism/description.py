@@ -111,7 +111,11 @@ class Beam:
 
 @dataclass(frozen=True)
 class Mechanism:
-    """The parts of a mechanism; gravity (3,) in m/s², in the ground's axes. ``spanning.compile_tree`` makes arrays of it."""
+    """The parts of a mechanism; gravity (3,) in m/s², in the ground's axes. ``spanning.compile_tree`` makes arrays of it.
+
+    ``equal_blades`` names coordinates of N ≥ 3 equal blades on a rotor, one tuple for each coordinate of a blade, in the order
+    of the blades' azimuths: a rotor on a support is solved in multi-blade coordinates.
+    """
 
     bodies: tuple[Body, ...]
     joints: tuple[Joint, ...]
@@ -121,6 +125,7 @@ class Mechanism:
     beams: tuple[Beam, ...] = ()
     loads: tuple[Load, ...] = ()
     gravity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    equal_blades: tuple[tuple[str, ...], ...] = ()
 
 
 def at_time(mechanism: Mechanism, time: float) -> Mechanism:

@@ -20,6 +20,7 @@ from ...core.mechanism.description import Mechanism
 from ...core.rank import ranked
 from ...core.tree.spanning import compile_tree
 from ...core.tree.topology import Tree
+from ..protocol import rotating
 from ..protocol.interface import CORE, CodeError, Independence, MechanismAdapter, MechanismModes
 from ..protocol.quadratic import damped_modes
 from ..protocol.rescaling import in_own_length
@@ -105,6 +106,8 @@ class ExudynMechanism(MechanismAdapter):
 
 
 def _modes(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    if mechanism.equal_blades and any(m.rate for m in mechanism.motions):
+        return _whirling(compile_tree(mechanism), guess)
     stages = linearize(compile_tree(mechanism), guess)
     _check_constant(compile_tree(mechanism), stages)
     null = stages.null
@@ -112,6 +115,33 @@ def _modes(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
     shapes = np.zeros((len(values), len(stages.q)), np.complex128)
     shapes[:, stages.free] = (null @ x).T
     return MechanismModes(stages.coordinates, stages.q, values, shapes)
+
+
+def _whirling(tree: Tree, guess: Mapping[str, float]) -> MechanismModes:
+    """The modes of a rotor with equal blades on a support, in Fourier coordinates of the blades.
+
+    Raises:
+        CodeError: loops, no steady state near the guess, or matrices that change with the azimuth.
+    """
+    if tree.welds:
+        raise CodeError("loops in a rotor with equal blades: not supported")
+    rates = velocity(tree)
+    spin = int(np.abs(rates).argmax())
+    steady = linearize(tree, {**guess, tree.coordinates[spin]: 0.0})
+
+    def at(psi: float) -> tuple[Array, Array, Array]:
+        turned = steady.q.copy()
+        turned[spin] = psi
+        here = stages(tree, system(tree), turned)
+        pick = np.ix_(here.free, here.free)
+        return here.M[pick], here.C[pick], here.K[pick]
+
+    place = {tree.coordinates[j]: k for k, j in enumerate(steady.free)}
+    groups = [[place[name] for name in group] for group in tree.mechanism.equal_blades]
+    values, x = rotating.modes(at, float(rates[spin]), groups)
+    shapes = np.zeros((len(values), len(steady.q)), np.complex128)
+    shapes[:, steady.free] = x.T
+    return MechanismModes(steady.coordinates, steady.q, values, shapes)
 
 
 def linearize(tree: Tree, guess: Mapping[str, float]) -> Stages:

@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
 from ...core.mechanism.description import Mechanism
+from ..protocol import rotating
 from ..protocol.interface import CodeError, Independence, MechanismAdapter, MechanismModes, extra
 from ..protocol.quadratic import damped_modes
 from ..protocol.rescaling import in_own_length
@@ -99,11 +100,45 @@ class PinocchioMechanism(MechanismAdapter):
 
 
 def _modes(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    if mechanism.equal_blades and any(m.rate for m in mechanism.motions):
+        return _whirling(mechanism, guess)
     linear = linearize(mechanism, guess)
     values, x = damped_modes(linear.M, linear.C, linear.K)
     shapes = np.zeros((len(values), len(linear.q)), np.complex128)
     shapes[:, linear.free] = (linear.null @ x).T
     return MechanismModes(linear.names, linear.q, values, shapes)
+
+
+def _whirling(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:
+    """The modes of a rotor with equal blades on a support, in Fourier coordinates of the blades.
+
+    Raises:
+        CodeError: loops, or matrices that change with the azimuth.
+    """
+    plant = Plant(mechanism)
+    names = plant.tree.names
+    spin = int(np.abs(plant.v).argmax())
+    prescribed = [names.index(m.coordinate) for m in mechanism.motions if m.prescribed]
+    free = np.setdiff1d(np.arange(len(names)), prescribed)
+    q = np.array([guess.get(name, 0.0) for name in names])
+    q[spin] = 0.0
+    q = _steady_state(plant, q, free)
+    if len(plant.at(q).J):
+        raise CodeError("loops in a rotor with equal blades: not supported")
+
+    def at(psi: float) -> tuple[Array, Array, Array]:
+        turned = q.copy()
+        turned[spin] = psi
+        here = plant.at(turned)
+        pick = np.ix_(free, free)
+        return here.M[pick], here.C[pick], here.K[pick]
+
+    place = {names[j]: k for k, j in enumerate(free)}
+    groups = [[place[name] for name in group] for group in mechanism.equal_blades]
+    values, x = rotating.modes(at, float(plant.v[spin]), groups)
+    shapes = np.zeros((len(values), len(names)), np.complex128)
+    shapes[:, free] = x.T
+    return MechanismModes(names, q, values, shapes)
 
 
 def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:

@@ -111,6 +111,7 @@ def in_units(mechanism: Mechanism, units: Units) -> Mechanism:
         beams=tuple(_beam(b, units) for b in mechanism.beams),
         loads=tuple(Load(f.body, f.force * time**2 / (mass * length), f.axes_of) for f in mechanism.loads),
         gravity=(x, y, z),
+        equal_blades=mechanism.equal_blades,
     )
 
 

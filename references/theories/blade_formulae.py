@@ -102,7 +102,54 @@ def flap_pitch(
     return ("flap.rz", "pitch.rz"), M, C, K
 
 
-FORMULAE: Mapping[str, Callable[..., Matrices]] = {"flap-lag": flap_lag, "flap-pitch": flap_pitch}
+def lag_rotor(
+    omega: float,
+    *,
+    mass: float,
+    stiffness_x: float,
+    stiffness_y: float,
+    first: float,
+    inertia: float,
+    hinge_spring: float,
+    offset: float,
+) -> Matrices:
+    """Three blades on lag hinges at 0°, 120° and 240°, the hub on springs along x and y: equations seen from the ground.
+
+    With ζ_k = z + a cos ψ_k + b sin ψ_k, κ = k_ζ + Ω² e S and m the mass of hub and blades (Coleman and Feingold 1958):
+    m ẍ + k_x x − 3/2 S b̈ = 0, m ÿ + k_y y + 3/2 S ä = 0, I z̈ + κ z = 0,
+    I (ä + 2Ω ḃ − Ω² a) + κ a + S ÿ = 0, I (b̈ − 2Ω ȧ − Ω² b) + κ b − S ẍ = 0.
+
+    Args:
+        omega: rotor speed, rad/s.
+        mass: m, kg.
+        stiffness_x, stiffness_y: N/m.
+        first: S of one blade about its hinge, kg m.
+        inertia: I of one blade about its hinge, kg m².
+        hinge_spring: k_ζ, N m/rad.
+        offset: e, m.
+
+    Returns:
+        names of the coordinates; M, C, K (5, 5) over hub and blades at the azimuth 0.
+    """
+    kappa = hinge_spring + omega**2 * offset * first
+    M = np.diag([mass, mass, inertia, inertia, inertia])
+    M[0, 4], M[1, 3], M[3, 1], M[4, 0] = -1.5 * first, 1.5 * first, first, -first
+    C = np.zeros((5, 5))
+    C[3, 4], C[4, 3] = 2.0 * omega * inertia, -2.0 * omega * inertia
+    whirl = kappa - omega**2 * inertia
+    K = np.diag([stiffness_x, stiffness_y, kappa, whirl, whirl])
+    azimuth = 2.0 * np.pi * np.arange(3) / 3.0
+    T = np.eye(5)
+    T[2:, 2:] = np.stack([np.ones(3), np.cos(azimuth), np.sin(azimuth)], axis=-1)
+    M, C, K = (T @ part @ np.linalg.inv(T) for part in (M, C, K))
+    return ("X.z", "Y.z", "lag0.rz", "lag1.rz", "lag2.rz"), M, C, K
+
+
+FORMULAE: Mapping[str, Callable[..., Matrices]] = {
+    "flap-lag": flap_lag,
+    "flap-pitch": flap_pitch,
+    "lag-rotor": lag_rotor,
+}
 """Formulae by their names in case files."""
 
 

@@ -1,0 +1,77 @@
+"""Rotors with equal blades, for codes that return matrices at an azimuth: Fourier coordinates of the blades.
+
+The coordinates of blades 0 … N − 1 are ``q_k = Σ_m a_m e^{i m ψ_k}/√N`` with ψ_k = ψ + 2πk/N and m from −(N − 1)/2 to (N − 1)/2
+(for even N also (−1)^k, which does not turn). They are complex, and their transformation is unitary, unlike core's cosine and
+sine coordinates, which are not used here. With a = e^{λt} both are seen from the support.
+"""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .interface import CodeError
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+Matrices = tuple[Array, Array, Array]
+
+AZIMUTHS = (0.0, 0.9, 2.3)
+"""rad; the transformed matrices must be the same at all of them."""
+
+CHANGE = 1e-7
+"""Largest change with the azimuth, relative to the largest entry, that counts as rounding."""
+
+
+def modes(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequence[int]]) -> tuple[Complex, Complex]:
+    """Eigenvalues (m,) with imaginary part ≥ 0, by modulus, and shapes (n, m) at the azimuth 0.
+
+    Args:
+        at: M, C, K (n, n) at an azimuth, rad.
+        omega: rotor speed, rad/s.
+        groups: indices of the coordinates of equal name on all blades, in the order of their azimuths.
+
+    Raises:
+        CodeError: the transformed matrices change with the azimuth.
+    """
+    first, *others = [_transformed(at(psi), omega, groups, psi) for psi in AZIMUTHS]
+    for other in others:
+        for power, (a, b) in zip((2, 1, 0), zip(first, other, strict=True), strict=True):
+            size = max(float(np.abs(part).max()) * abs(omega) ** p for p, part in zip((2, 1, 0), first, strict=True))
+            if float(np.abs(a - b).max()) * abs(omega) ** power > CHANGE * size:
+                raise CodeError(
+                    "periodic: the matrices change with the azimuth, also in Fourier coordinates of the blades"
+                )
+    M, C, K = first
+    n = len(M)
+    lower = -np.linalg.solve(M, np.hstack([K, C]))
+    values, vectors = np.linalg.eig(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]))
+    order = np.argsort(np.abs(values), kind="stable")
+    order = order[values[order].imag >= -1e-12 * np.abs(values).max()]
+    T, _ = _fourier(n, groups, 0.0)
+    return values[order], T @ vectors[:n, order]
+
+
+def _transformed(matrices: Matrices, omega: float, groups: Sequence[Sequence[int]], psi: float) -> tuple[Complex, ...]:
+    M, C, K = matrices
+    T, turn = _fourier(len(M), groups, psi)
+    D = 1j * omega * turn  # q̇ = T (ȧ + D a), q̈ = T (ä + 2 D ȧ + D² a)
+    left = T.conj().T
+    mass, damping = left @ M @ T, left @ C @ T
+    return mass, damping + 2.0 * mass * D, left @ K @ T + damping * D + mass * D**2
+
+
+def _fourier(n: int, groups: Sequence[Sequence[int]], psi: float) -> tuple[Complex, Array]:
+    """T (n, n) at an azimuth, and the order (n,) at which each of its columns turns."""
+    T, turn = np.eye(n, dtype=np.complex128), np.zeros(n)
+    for group in groups:
+        blades, k = len(group), np.arange(len(group))
+        orders = list(range(-((blades - 1) // 2), (blades - 1) // 2 + 1))
+        columns = [np.exp(1j * m * (psi + 2.0 * np.pi * k / blades)) for m in orders]
+        if blades % 2 == 0:
+            columns.append((-1.0) ** k + 0j)
+            orders.append(0)
+        index = np.array(group, dtype=np.intp)
+        T[np.ix_(index, index)] = np.stack(columns, axis=-1) / np.sqrt(blades)
+        turn[index] = orders
+    return T, turn
