@@ -136,7 +136,7 @@ def machine_diagram(
     # from the highest speed downwards: at rest, whirls of a symmetric rotor have no definite shape
     order = tracked(solved[::-1])[::-1]
     chosen = np.argsort(solved[0].frequencies[order[0]], kind="stable")[: request.modes]
-    lines = _numbered([_line(solved, [places[t] for places in order], doubt) for t in chosen])
+    lines = _numbered([_line(solved, [int(places[t]) for places in order], doubt) for t in chosen])
     return MachineDiagram(
         turbine=turbine,
         request=request,

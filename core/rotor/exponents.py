@@ -9,7 +9,6 @@ fraction ``p_k* M̄ p_k`` of the kinetic energy per frequency squared. (Peters, 
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 from numpy.typing import NDArray
 
 Array = NDArray[np.float64]
@@ -93,7 +92,7 @@ def separated(values: Complex, shapes: Complex, scale: float) -> Complex:
             P = shapes[:, :, same]
             flat = P.reshape(-1, len(same))
             ordered = (order * P).reshape(-1, len(same))
-            _, combination = scipy.linalg.eig(scipy.linalg.lstsq(flat, ordered)[0])
+            combination = np.linalg.eig(np.linalg.lstsq(flat, ordered, rcond=None)[0])[1]
             out[:, :, same] = (flat @ combination).reshape(P.shape)
     return out
 

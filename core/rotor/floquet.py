@@ -57,7 +57,9 @@ def _converged(system: Periodic) -> Exponents:
                     "steps per revolution: a frequency is too high for this speed; reduce the system to its lower modes"
                 )
         before, steps = multipliers, 2 * steps
-    values = np.log(multipliers.astype(np.complex128)) * abs(system.omega) / (2.0 * np.pi)
+    values: Complex = np.asarray(
+        np.log(multipliers.astype(np.complex128)) * abs(system.omega) / (2.0 * np.pi), np.complex128
+    )
     shapes = separated(multipliers, _harmonics(states, vectors, values, system), np.abs(multipliers).max())
     return exponents(system.omega, values, error, shapes, system.mean[0], steps)
 

@@ -9,6 +9,8 @@ solution is kept whose harmonics are centred. H grows until these remain. (Hill 
 Systems*, 1964.)
 """
 
+from typing import cast
+
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
@@ -82,7 +84,7 @@ def _centred(system: Periodic, H: int) -> tuple[Complex, Complex, float]:
     A = np.zeros((2 * size, 2 * size), np.complex128)
     A[:size, size:] = np.eye(size)
     A[size:] = lower
-    values, vectors = scipy.linalg.eig(A)
+    values, vectors = cast(tuple[Complex, Complex], scipy.linalg.eig(A))
     shapes = vectors[:size].reshape(2 * H + 1, n, -1)
     root = np.sqrt(np.maximum(np.diagonal(system.mean[0]), 0.0))[:, None]
     shapes = separated(values, shapes * root, abs(system.omega)) / np.where(root > 0, root, 1.0)

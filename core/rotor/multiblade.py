@@ -39,11 +39,11 @@ def transformation(psi: ArrayLike, blades: int) -> Array:
     """T (…, N, N) at azimuths ψ (…), rad: coordinates of the blades from multi-blade ones."""
     harmonics = _harmonics(blades)
     azimuth = np.asarray(psi, float)[..., None] + 2.0 * np.pi * np.arange(blades) / blades
-    columns = [np.ones_like(azimuth)]
+    columns: list[Array] = [np.ones_like(azimuth)]
     for m in range(1, harmonics + 1):
         columns += [np.cos(m * azimuth), np.sin(m * azimuth)]
     if blades % 2 == 0:
-        columns.append(np.broadcast_to((-1.0) ** np.arange(blades), azimuth.shape))
+        columns.append(np.zeros_like(azimuth) + (-1.0) ** np.arange(blades))
     return np.stack(columns, axis=-1)
 
 
@@ -140,7 +140,7 @@ def first_order(A: Array, psi: ArrayLike, omega: float, positions: Blades, rates
         positions: groups of the blades' positions and first-order states.
         rates: (r, 2) index of a position and of its rate; the blades' first-order states are in no row.
     """
-    rate_of = dict(np.asarray(rates, dtype=np.intp).reshape(-1, 2).tolist())
+    rate_of: dict[int, int] = {int(p): int(v) for p, v in np.asarray(rates, dtype=np.intp).reshape(-1, 2)}
     moved = [[rate_of[int(k)] for k in group] for group in positions.groups if int(group[0]) in rate_of]
     T, inv, R = positions.transformation(psi), positions.inverse(psi), positions.rate()
     for group in moved:

@@ -58,7 +58,7 @@ class Periodic:
         """M, C, K (…, n, n) at azimuths ψ (…), rad."""
         order = np.arange(-self.harmonics, self.harmonics + 1)
         wave = np.exp(1j * np.asarray(psi, float)[..., None] * order)
-        M, C, K = (np.tensordot(wave, part, axes=1).real for part in (self.M, self.C, self.K))
+        M, C, K = (np.real(np.tensordot(wave, part, axes=1)) for part in (self.M, self.C, self.K))
         return M, C, K
 
     @cached_property

@@ -293,7 +293,7 @@ def _turn(psi: float) -> tuple[Array, Array, Array]:
         np.array([[-s, c, 0.0], [-c, -s, 0.0], [0.0, 0.0, 0.0]]),
         np.array([[-c, -s, 0.0], [s, -c, 0.0], [0.0, 0.0, 0.0]]),
     )
-    first, second, third = (np.kron(np.eye(2), part) for part in parts)
+    first, second, third = (np.asarray(np.kron(np.eye(2), part), float) for part in parts)
     return first, second, third
 
 

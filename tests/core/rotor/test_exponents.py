@@ -13,7 +13,12 @@ from southwell.core.rotor.stability import limits
 
 def scalar(M, C, K, omega: float = 1.0) -> Periodic:
     """One coordinate, its mass, damping and stiffness functions of ψ."""
-    return sampled(lambda psi: tuple(np.array([[float(f(psi))]]) for f in (M, C, K)), omega, ("x",))
+
+    def matrices(psi: float) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        m, c, k = (np.array([[float(f(psi))]]) for f in (M, C, K))
+        return m, c, k
+
+    return sampled(matrices, omega, ("x",))
 
 
 def flapping(mu: float, gamma: float = 12.0, p: float = 1.0) -> Periodic:

@@ -42,7 +42,7 @@ def test_first_and_second_order_give_the_same_state_matrix() -> None:
 def test_uncoupled_blades_seen_from_the_support() -> None:
     """Equal oscillators on blades have the frequencies ω and ω ± Ω; the free motion is that of the blades."""
     omega, nature = 0.8, 3.0
-    A = np.kron(np.array([[0.0, 1.0], [-(nature**2), 0.0]]), np.eye(3))
+    A = np.asarray(np.kron(np.array([[0.0, 1.0], [-(nature**2), 0.0]]), np.eye(3)), float)
     rates = np.column_stack([np.arange(3), np.arange(3) + 3])
     seen = mb.first_order(A, 0.3, omega, mb.blades_of(6, [[0, 1, 2]]), rates)
     found = np.sort(np.abs(np.linalg.eigvals(seen).imag))[::2]

@@ -1,6 +1,7 @@
 """Rotors on supports against tables and equations derived by hand: constant and periodic coefficients."""
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -98,7 +99,7 @@ def test_ground_resonance() -> None:
         value = root if root.imag > 0 else root.conjugate()
         assert np.abs(found - value).min() < 1e-9 * abs(value)
     undamped = hammond_roots(15.0, 0.0, (SUPPORT[0], 0.0))
-    assert undamped.real.max() > 0.1  # unstable without dampers
+    assert np.real(undamped).max() > 0.1  # unstable without dampers
 
 
 def test_a_failed_lag_damper_makes_the_rotor_periodic() -> None:
@@ -127,20 +128,20 @@ def test_the_limit_of_ground_resonance() -> None:
     damping, support = 4067.5, (SUPPORT[0], 5000.0)
 
     def growth(omega: float) -> float:
-        return float(hammond_roots(omega, damping, support).real.max())
+        return float(np.real(hammond_roots(omega, damping, support)).max())
 
     def system(omega: float) -> Periodic:
         return in_multiblade(linearize(hammond(omega, (damping,) * 4, support), SHAFT)[0], FOUR)
 
     (limit,) = limits(system, [20.0, 21.0], 1e-4)
-    exact = brentq(growth, 20.0, 21.0, xtol=1e-12)
+    exact = cast(float, brentq(growth, 20.0, 21.0, xtol=1e-12))
     assert abs(limit.at - exact) <= limit.uncertainty < 3e-3
     assert not limit.grows_above
 
 
 def test_a_failed_damper_makes_a_stable_rotor_unstable() -> None:
     omega, damping, support = 18.0, 12_000.0, (SUPPORT[0], 5000.0)
-    assert hammond_roots(omega, damping, support).real.max() < -0.04
+    assert np.real(hammond_roots(omega, damping, support)).max() < -0.04
     failed, _ = linearize(hammond(omega, (0.0, *(damping,) * 3), support), SHAFT)
     assert compared(failed).floquet.growth > 0.1
 

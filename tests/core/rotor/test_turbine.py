@@ -1,6 +1,7 @@
 """A turbine against the same machine as a general mechanism, closed forms, and the plain solver of a beam."""
 
 from dataclasses import replace
+from typing import cast
 
 import numpy as np
 import pytest
@@ -118,7 +119,7 @@ def test_tower_with_a_tip_body() -> None:
         c, s, ch, sh = np.cos(b), np.sin(b), np.cosh(b), np.sinh(b)
         return 1.0 + c * ch + tip / (mass * length) * b * (c * sh - s * ch)
 
-    exact = (brentq(equation, 0.5, 1.8) / length) ** 2 * np.sqrt(EI / mass)
+    exact = (cast(float, brentq(equation, 0.5, 1.8)) / length) ** 2 * np.sqrt(EI / mass)
     found = solve.modes(tower, 0.0, count=2, accuracy=1e-7).frequencies
     np.testing.assert_allclose(found, exact, rtol=1e-6)
 
@@ -164,3 +165,33 @@ def test_torsion_of_a_shaft_between_rotor_and_generator() -> None:
     found = turbine_modes(made, 0.0, 1)
     assert found.names == ("drivetrain torsion",)
     assert found.frequencies[0] == pytest.approx(np.sqrt(k * (1 / inertia + 1 / (ratio**2 * J))), rel=1e-4)
+
+
+def wrong_nacelle(turbine: tb.Turbine) -> tb.Turbine:
+    """Moments about the tower's top taken for those about the mass centre."""
+    inertia = turbine.nacelle.copy()
+    arm = inertia[:3, 3:] / inertia[0, 0]
+    inertia[3:, 3:] += inertia[0, 0] * arm.T @ arm
+    return replace(turbine, nacelle=inertia)
+
+
+WRONG = {
+    "tilt": lambda t: replace(t, shaft=tb.shaft_pose(0.7, -1.5, 0.09)),
+    "overhang": lambda t: replace(t, shaft=tb.shaft_pose(0.7, 1.5, -0.09)),
+    "precone": lambda t: replace(t, blade=replace(t.blade, precone=0.04)),
+    "pitch": lambda t: replace(t, blade=replace(t.blade, pitch=-0.1)),
+    "nacelle about the wrong point": wrong_nacelle,
+    "gear ratio not squared": lambda t: replace(
+        t, drivetrain=replace(t.drivetrain, generator=t.drivetrain.generator / t.drivetrain.gear_ratio)
+    ),
+}
+"""Turbines with one error each."""
+
+
+@pytest.mark.parametrize("name", WRONG)
+def test_a_wrong_machine_has_other_frequencies(name: str) -> None:
+    """By far more than codes differ that solve the same machine (1e-6)."""
+    turbine = small(4e5, Drivetrain(2e6, 0.3, 20.0, True))
+    right = turbine_modes(machine(turbine, ONE), OMEGA, 10).frequencies
+    wrong = turbine_modes(machine(WRONG[name](turbine), ONE), OMEGA, 10).frequencies
+    assert np.abs(wrong / right - 1.0).max() > 1e-4
