@@ -47,7 +47,7 @@ FREEDOMS = 9
 """Freedoms of an element, those it shares counted once."""
 
 ITERATED = 500
-"""Number of freedoms above which pyBModes computes eigenvalues iteratively, from a random vector."""
+"""Number of freedoms above which pyBModes computes eigenvalues iteratively, from a random vector (see ``_reproducible``)."""
 
 NEAR = 1e-3
 """Relative difference between frequencies of a coarse mesh below which iteration may miss one of the two modes."""
@@ -109,7 +109,7 @@ class PyBModes(BladeAdapter):
             CodeError: a stiffness that is not positive at this speed.
         """
         s = element_ends(blade, elements, SECTIONS)
-        with _rotor(blade, omega, s, count) as rotor:
+        with _rotor(blade, omega, s, count) as rotor, _reproducible():
             doubted = FREEDOMS * (len(s) - 1) > ITERATED and _doubled(blade, omega, count)
             frequencies, shapes = _moving(rotor, blade, count, doubted, _most(blade, len(s) - 1))
         return Modes(omega, frequencies, shapes, len(s) - 1)
@@ -131,6 +131,23 @@ def _rotor(blade: Blade, omega: float, s: Array, count: int) -> Iterator[Any]:
     """pyBModes's model of a blade on elements that end at ``s`` (n+1,), m; its input file exists meanwhile."""
     with TemporaryDirectory() as folder:
         yield _pybmodes().RotatingBlade(write(Path(folder), blade, omega, s, count))
+
+
+@contextmanager
+def _reproducible() -> Iterator[None]:
+    """Let pyBModes' iteration begin at the same vectors in every call, another one each time that it begins."""
+    from scipy.sparse import linalg
+
+    eigsh, random = linalg.eigsh, np.random.default_rng(0)
+
+    def from_a_known_vector(matrix: Any, *args: Any, **options: Any) -> Any:
+        return eigsh(matrix, *args, **{"v0": random.uniform(-1.0, 1.0, matrix.shape[0]), **options})
+
+    linalg.eigsh = from_a_known_vector
+    try:
+        yield
+    finally:
+        linalg.eigsh = eigsh
 
 
 def _element_masses(path: Path) -> Fingerprint:
@@ -174,7 +191,7 @@ def _most(blade: Blade, elements: int) -> int:
 def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> tuple[Array, NDArray[np.complex128]]:
     """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes with lateral motion or twist.
 
-    With more than ``ITERATED`` freedoms, pyBModes iterates from a random vector, which at times misses one of two modes with
+    With more than ``ITERATED`` freedoms, pyBModes iterates from one vector, and at times misses one of two modes with
     the same frequency. Where there may be such modes (``doubted``), more modes are requested until two answers agree.
 
     Raises:

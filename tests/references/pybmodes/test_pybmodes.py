@@ -282,3 +282,10 @@ def test_both_modes_of_double_pairs_are_found() -> None:
     f = CODE.solve(ROUND, 0.0, 80, 6).frequencies
     np.testing.assert_allclose(f[::2], f[1::2], rtol=1e-9)
     np.testing.assert_allclose(f[::2], np.square(ROOTS[:3]), rtol=1e-6)
+
+
+def test_iterated_answers_are_reproducible() -> None:
+    """Above ``ITERATED`` freedoms the iteration begins at a random vector, unless it is given."""
+    first, second = (CODE.solve(WINDPACT, 2.0, 80, 6) for _ in range(2))
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
