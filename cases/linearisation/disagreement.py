@@ -7,9 +7,9 @@ from numpy.typing import NDArray
 
 from .azimuths import EXCHANGE
 from .findings import DEFECT, LIMIT, Finding
-from .floquet import SAME_PHASE, interpolate
+from .floquet import SAME_PHASE, interpolate, second_order
 from .modes import Spectrum
-from .multiblade import fixed_frame
+from .multiblade import fixed_frame, states_of_components
 from .sets import AzimuthSet
 
 Array = NDArray[np.float64]
@@ -36,15 +36,19 @@ def unexplained(azimuths: Array, matrices: Array) -> Array:
     return matrices - np.array([fit.at(float(psi)) for psi in azimuths])
 
 
-def effects(found: Spectrum, parts: Array) -> Array:
-    """Relative changes of the eigenvalues by each azimuth's part (mode, azimuth), to first order.
+def effects(each: AzimuthSet, found: Spectrum, parts: Array) -> Array:
+    """Relative changes of the eigenvalues by each azimuth's part (mode, azimuth), to first and second order.
 
     Changes that the rounding of one file may cause are 0.
     """
+    values, adjoints, shapes = found.vectors
+    second = second_order(parts, each.omega, (-2, -1, 1, 2), values, adjoints, shapes) / np.abs(values)
+    weight = np.linalg.norm(parts, axis=(1, 2))
+    share = weight / max(float(weight.max()), 1e-300)
     out = []
-    for mode in found.modes:
+    for mode, estimate in zip(found.modes, second, strict=True):
         if mode.structural > 0.5 and np.isfinite(mode.uncertainty):
-            change = np.abs(parts @ mode.shape @ mode.adjoint) / abs(mode.eigenvalue)
+            change = np.maximum(np.abs(parts @ mode.shape @ mode.adjoint) / abs(mode.eigenvalue), estimate * share)
             rounding = mode.relative_uncertainty * np.sqrt(len(parts))
             out.append(np.where(change > ROUNDING_FACTOR * rounding, change, 0.0))
     return np.array(out).reshape(-1, len(parts))
@@ -55,10 +59,11 @@ def agreement(each: AzimuthSet, A: Array, found: Spectrum) -> Iterator[Finding]:
     if len(each.files) < 2 or not found.modes:
         return
     parts = unexplained(each.azimuths, found.matrices)
-    effect = effects(found, parts)
+    parts[np.abs(parts) < ROUNDING_FACTOR * _noise(each)] = 0.0
+    effect = effects(each, found, parts)
     if not effect.size or effect.max() < MAX_EFFECT:
         return
-    size = float(np.linalg.norm(parts))
+    size = float(np.linalg.norm(unexplained(each.azimuths, found.matrices)))
     if each.blades == 3 and size > EXPLAINS * float(np.linalg.norm(_exchanged(each, A))):
         yield Finding(
             "blades exchanged",
@@ -114,6 +119,7 @@ def _inertia(each: AzimuthSet, matrices: Array) -> tuple[str, float, list[str]] 
     """
     reference = _typical(each.azimuths, matrices)
     difference = matrices - reference
+    difference[np.abs(difference) < ROUNDING_FACTOR * _noise(each)] = 0.0
     total = float(np.linalg.norm(difference))
     best: tuple[float, int, Array] | None = None
     for q, v in each.pairs:
@@ -145,3 +151,12 @@ def _typical(azimuths: Array, matrices: Array) -> Array:
             for near in distance
         ]
     )
+
+
+def _noise(each: AzimuthSet) -> Array:
+    """Largest errors of the matrices in the fixed frame by the printed digits (azimuth, row, column)."""
+    out = np.empty_like(each.half)
+    for k, file in enumerate(each.files):
+        P, inverse = states_of_components(each, file.azimuth, file.rotor_speed)
+        out[k] = np.abs(inverse) @ each.half[k] @ np.abs(P)
+    return out

@@ -3,6 +3,7 @@
 For equal blades the matrix in the fixed frame has the harmonics 0, 3, 6, … of the rotor speed only.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -17,6 +18,9 @@ MAX_HARMONICS = 4
 
 STEPS = 12
 """Steps per blade passage and harmonic of the integration."""
+
+MIN_GAP = 0.02
+"""Least distance from resonance in the estimate of a periodic part's effect, relative to the rotor speed."""
 
 SAME_PHASE = np.radians(10.0)
 """Azimuths whose phases of blade passing differ by less show the same instant of it."""
@@ -68,22 +72,25 @@ def interpolate(azimuths: Array, matrices: Array, harmonics: int | None = None) 
     return Interpolation(cosine, sine, count, residual / periodic if periodic > 0 else 0.0)
 
 
-def second_order(matrices: Array, omega: float, values: Complex, adjoints: Complex, shapes: Complex) -> Array:
-    """Estimate of the changes of eigenvalues by the periodic part, rad/s: Σ_j |l_i δA r_j| |l_j δA r_i| / |λ_i − λ_j + 3inΩ|.
+def second_order(
+    parts: Array, omega: float, orders: Sequence[int], values: Complex, adjoints: Complex, shapes: Complex
+) -> Array:
+    """Estimate of the changes of eigenvalues by periodic parts, rad/s: Σ_j |l_i δA r_j| |l_j δA r_i| / |λ_i − λ_j + inΩ|.
 
     Args:
-        matrices: in the fixed frame (azimuth, row, column).
+        parts: δA in the fixed frame (azimuth, row, column), of zero mean.
         omega: rotor speed, rad/s.
+        orders: n, the harmonics of the rotor speed in the parts.
         values: eigenvalues of the mean matrix.
         adjoints: left eigenvectors by row, of unit product with the right ones.
         shapes: right eigenvectors by column.
     """
     every = np.concatenate([values, values.conj()])
     left, right = np.vstack([adjoints, adjoints.conj()]), np.hstack([shapes, shapes.conj()])
-    coupling = np.max([np.abs(left @ part @ right) for part in matrices - matrices.mean(axis=0)], axis=0)
+    coupling = np.max([np.abs(left @ part @ right) for part in parts], axis=0)
     between = every[:, None] - every
-    gap = np.min([np.abs(between + 3j * n * omega) for n in (-1, 1)], axis=0)
-    size = (coupling * coupling.T / np.maximum(gap, 1e-12)).sum(axis=1)
+    gap = np.min([np.abs(between + 1j * n * omega) for n in orders], axis=0)
+    size = (coupling * coupling.T / np.maximum(gap, MIN_GAP * abs(omega))).sum(axis=1)
     return size[: len(values)]
 
 

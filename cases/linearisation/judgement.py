@@ -95,13 +95,10 @@ def _periodic(each: AzimuthSet, found: Spectrum) -> tuple[tuple[Mode, ...], str]
     fit = floquet.interpolate(each.azimuths, found.matrices)
     if not fit.harmonics:
         return found.modes, AVERAGED
-    near = np.array([mode.eigenvalue for mode in found.modes])
+    near, adjoints, shapes = found.vectors
     structural = np.array([mode.structural > 0.5 for mode in found.modes])
-    adjoints, shapes = (
-        np.array([mode.adjoint for mode in found.modes]),
-        np.array([mode.shape for mode in found.modes]).T,
-    )
-    estimate = floquet.second_order(found.matrices, each.omega, near, adjoints, shapes) / np.abs(near)
+    parts = found.matrices - found.matrices.mean(axis=0)
+    estimate = floquet.second_order(parts, each.omega, (-3, 3), near, adjoints, shapes) / np.abs(near)
     if not structural.any() or estimate[structural].max() < MAX_PERIODIC / 2:
         return found.modes, AVERAGED
     values = floquet.exponents(fit, each.omega, near)

@@ -79,6 +79,15 @@ class Spectrum:
     modes: tuple[Mode, ...]
     real: Complex
 
+    @property
+    def vectors(self) -> tuple[Complex, Complex, Complex]:
+        """Eigenvalues, left eigenvectors by row and right ones by column of all modes."""
+        return (
+            np.array([mode.eigenvalue for mode in self.modes]),
+            np.array([mode.adjoint for mode in self.modes]),
+            np.array([mode.shape for mode in self.modes]).T,
+        )
+
 
 def spectrum(each: AzimuthSet, A: Array) -> Spectrum:
     """The modes of state matrices ``A``, which may differ from those of the files by a correction."""
