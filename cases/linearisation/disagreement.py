@@ -64,15 +64,15 @@ def agreement(each: AzimuthSet, A: Array, found: Spectrum) -> Iterator[Finding]:
     if not effect.size or effect.max() < MAX_EFFECT:
         return
     size = float(np.linalg.norm(unexplained(each.azimuths, found.matrices)))
-    if each.blades == 3 and size > EXPLAINS * float(np.linalg.norm(_exchanged(each, A))):
+    exchanged = float(np.linalg.norm(_exchanged(each, A))) if each.blades == 3 else np.inf
+    if size > EXPLAINS * exchanged:
         yield Finding(
             "blades exchanged",
             DEFECT,
             each.name,
-            f"azimuths change eigenvalues by up to {100 * effect.max():.2g} %; with blades 2 and 3 exchanged "
-            f"{size / max(float(np.linalg.norm(_exchanged(each, A))), 1e-300):.0f} times less",
+            f"azimuths differ in the fixed frame, with blades 2 and 3 exchanged {size / max(exchanged, 1e-300):.0f} times less",
             EXCHANGE,
-            float(effect.max()),
+            size / max(exchanged, 1e-300),
         )
         return
     drift = _inertia(each, found.matrices)

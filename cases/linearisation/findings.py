@@ -34,3 +34,8 @@ def listed(items: list[str], most: int = 3) -> str:
     """The first items, and how many there are more."""
     more = f" and {len(items) - most} more" if len(items) > most else ""
     return ", ".join(items[:most]) + more
+
+
+def count(n: int, what: str) -> str:
+    """A number of things, with an s unless it is one."""
+    return f"{n} {what}{'' if n == 1 else 's'}"

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ..input import files
 from ..input.errors import CaseError
 from ..input.readers.text import number
-from .findings import DEFECT, LIMIT, Finding, listed
+from .findings import DEFECT, LIMIT, Finding, count, listed
 from .orders import Line, order_lines
 
 Array = NDArray[np.float64]
@@ -141,7 +141,7 @@ def findings(table: ModeTable) -> Iterator[Finding]:
             "negative frequency",
             DEFECT,
             table.name,
-            f"{len(negative)} modes have negative frequencies ({listed(negative)})",
+            f"{count(len(negative), 'mode')} with negative frequencies ({listed(negative)})",
             "give the eigenvalue with a positive imaginary part of each pair",
             float(len(negative)),
         )
@@ -156,7 +156,7 @@ def findings(table: ModeTable) -> Iterator[Finding]:
             "negative damping",
             LIMIT,
             table.name,
-            f"{len(grow)} modes grow at some operating point ({listed(grow)}; least {100 * np.nanmin(table.damping):.2g} %)",
+            f"{count(len(grow), 'mode')} with negative damping ({listed(grow)}; least {100 * np.nanmin(table.damping):.2g} %)",
             "an instability of the turbine, or of the linearisation: give its .lin files to find the cause",
             float(np.nanmin(table.damping)),
         )

@@ -5,7 +5,7 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from .findings import DEFECT, LIMIT, NOTE, Finding, listed
+from .findings import DEFECT, LIMIT, NOTE, Finding, count, listed
 from .modes import Mode, Spectrum
 from .sets import AzimuthSet
 from .states import STRUCTURAL
@@ -47,7 +47,7 @@ def columns(each: AzimuthSet) -> Iterator[Finding]:
             "zero column",
             DEFECT,
             each.name,
-            f"{len(still)} displacements of structures act on no equation ({listed(still)})",
+            f"{count(len(still), 'displacement')} of structures without effect on any equation ({listed(still)})",
             "their columns of A are zero although a spring must hold them: report it to the authors of the program",
             float(len(still)),
         )
@@ -65,7 +65,7 @@ def columns(each: AzimuthSet) -> Iterator[Finding]:
             "zero row",
             DEFECT,
             each.name,
-            f"{len(others_stuck)} motions are never accelerated ({listed(others_stuck)})",
+            f"{count(len(others_stuck), 'motion')} without acceleration ({listed(others_stuck)})",
             "their rows of A are zero: report it to the authors of the program",
             float(len(others_stuck)),
         )
@@ -74,7 +74,7 @@ def columns(each: AzimuthSet) -> Iterator[Finding]:
             "idle states",
             NOTE,
             each.name,
-            f"{idle} states of first order act on no other state",
+            f"{count(idle, 'state')} of first order without effect on any other state",
             "harmless; they add eigenvalues that move nothing",
             float(idle),
         )
@@ -176,14 +176,14 @@ def symmetry(each: AzimuthSet) -> Iterator[Finding]:
             if _asymmetry(np.roll(block, s * sign, axis)) < min(MAX_ASYMMETRY, worst / 10)
         ]
         if better:
-            shift, axis = better[0]
+            shift, _ = better[0]
             yield Finding(
                 "index shift",
                 DEFECT,
                 each.name,
-                f"the stiffness {'columns' if axis else 'rows'} of blade {blade} are stored {-shift:+d} states further on",
+                f"the stiffness block of blade {blade} is stored {abs(shift)} states off its place",
                 "a block of A is stored at the wrong index: report it to the authors of the program",
-                float(-shift),
+                float(abs(shift)),
             )
         else:
             yield Finding(
@@ -218,7 +218,7 @@ def damping(each: AzimuthSet, modes: tuple[Mode, ...]) -> Iterator[Finding]:
         "negative damping",
         LIMIT if aerodynamic else DEFECT,
         each.name,
-        f"{len(grow)} modes grow (worst: {worst.name}, {100 * worst.damping:.2g} %)",
+        f"{count(len(grow), 'mode')} with negative damping (worst: {worst.name}, {100 * worst.damping:.2g} %)",
         "an instability of the turbine, or of the linearisation: check another operating point"
         if aerodynamic
         else "without aerodynamics no structural mode gains energy: see the other findings, else report it",
@@ -236,8 +236,8 @@ def digits(each: AzimuthSet, modes: tuple[Mode, ...]) -> Iterator[Finding]:
             "truncated digits",
             DEFECT,
             each.name,
-            f"{min(f.digits for f in each.files)} printed digits leave {len(loose)} frequencies uncertain by more than 1 % "
-            f"(worst: {worst.name}, {worst.frequency:.4g} Hz, {lost})",
+            f"{min(f.digits for f in each.files)} printed digits leave {len(loose)} of {len(modes)} frequencies uncertain by "
+            f"more than 1 % (worst: {worst.name}, {worst.frequency:.4g} Hz, {lost})",
             'set OutFmt of the main input file to "ES18.9E3" or finer and linearise again',
             worst.relative_uncertainty,
         )

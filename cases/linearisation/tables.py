@@ -5,7 +5,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .findings import DEFECT, LIMIT, NOTE, Finding, listed
+from .findings import DEFECT, LIMIT, NOTE, Finding, count, listed
 from .sets import AzimuthSet
 from .states import RATE, STRUCTURAL
 
@@ -21,7 +21,7 @@ def headers(each: AzimuthSet) -> Iterator[Finding]:
             "header overflow",
             DEFECT,
             each.name,
-            f"asterisks in place of {listed(list(fields))} ({len(fields)} fields)",
+            f"{count(len(fields), 'field')} printed as asterisks ({listed(list(fields))})",
             "the program that wrote the file lacks columns for these numbers; the tables were counted instead",
             float(len(fields)),
         )
@@ -55,7 +55,7 @@ def order(each: AzimuthSet) -> Iterator[Finding]:
             "states reordered",
             NOTE,
             each.name,
-            f"{len(other)} of {len(each.files)} files have another order of the states ({listed(other)})",
+            f"another order of the states in {len(other)} of {len(each.files)} files ({listed(other)})",
             "sorted by their descriptions; programs that read by position mix them up",
             float(len(other)),
         )
@@ -109,7 +109,7 @@ def flags(each: AzimuthSet) -> Iterator[Finding]:
             "frame flag",
             DEFECT,
             each.name,
-            f"{len(wrong)} flags of the rotating frame contradict the descriptions ({states})",
+            f"{count(len(wrong), 'flag')} of the rotating frame against the description ({states})",
             "states of blades turn with the rotor, others do not: the frame was taken from the descriptions",
             float(len(wrong)),
         )
@@ -128,7 +128,7 @@ def completeness(each: AzimuthSet) -> Iterator[Finding]:
             "missing state",
             DEFECT,
             each.name,
-            f"{len(single)} states of second order lack their displacement or rate ({listed(single)})",
+            f"{count(len(single), 'state')} of second order without displacement or rate ({listed(single)})",
             "the table was edited: linearise again",
             float(len(single)),
         )
@@ -150,7 +150,7 @@ def completeness(each: AzimuthSet) -> Iterator[Finding]:
             "missing state",
             DEFECT,
             each.name,
-            f"{len(lacking)} motions are missing that other blades have ({listed(lacking)})",
+            f"{count(len(lacking), 'motion')} missing that other blades have ({listed(lacking)})",
             "enable the degree of freedom on all blades",
             float(len(lacking)),
         )
@@ -199,7 +199,7 @@ def kinematics(each: AzimuthSet) -> Iterator[Finding]:
             "index shift",
             DEFECT,
             each.name,
-            f"the rows of {times} displacements ({states}) are the rates {shift:+d} states further on",
+            f"the rows of {count(times, 'displacement')} ({states}) are the rates {shift:+d} states further on",
             "a block of A is stored at the wrong index: report it to the authors of the program",
             float(shift),
         )
@@ -208,7 +208,7 @@ def kinematics(each: AzimuthSet) -> Iterator[Finding]:
             "states reordered",
             DEFECT,
             each.name,
-            f"the rows of {len(wrong)} displacements ({states}) are the rates of other states",
+            f"the rows of {count(len(wrong), 'displacement')} ({states}) are the rates of other states",
             "the table of states does not belong to the matrix: linearise again",
             float(len(wrong)),
         )
@@ -217,7 +217,7 @@ def kinematics(each: AzimuthSet) -> Iterator[Finding]:
             "kinematic rows",
             DEFECT,
             each.name,
-            f"the rows of {len(wrong)} displacements ({states}) are not those of their rates",
+            f"the rows of {count(len(wrong), 'displacement')} ({states}) are not those of their rates",
             "A is damaged, or the states are not displacements: linearise again",
             float(len(wrong)),
         )

@@ -63,7 +63,8 @@ def _one(judged: JudgedSet, width: int, every: bool) -> Iterator[Table]:
         )
         for mode in shown
     ]
-    title = f"{judged.each.name}: {_rpm(judged)}, {judged.method}"
+    method = f", {judged.method}" if len(judged.each.files) > 1 else ""
+    title = f"{judged.each.name}: {_rpm(judged)}{method}"
     head = ("mode", "Hz", "± %", "damping %", "participation %")
     yield from tables(head, rows, width, title)
 

@@ -42,3 +42,9 @@ def test_a_displacement_without_its_rate_is_found() -> None:
         findings([without(lin, "First time derivative of Nacelle yaw") for lin in healthy(n=3)])["missing state"]
         == DEFECT
     )
+
+
+def test_the_page_has_every_planted_defect() -> None:
+    page = Path(__file__).parents[3].joinpath("docs", "linearisations.md").read_text(encoding="utf-8")
+    rows = [line.split(" | ")[:2] for line in page.splitlines() if line.startswith("| ")]
+    assert [["| " + defect.title, defect.names[0]] for defect in DEFECTS] == rows[1:]
