@@ -32,7 +32,8 @@ def on_startup(**_: Any) -> None:
     shutil.rmtree(SOURCE, ignore_errors=True)
     SOURCE.mkdir(parents=True)
     root = Path(__file__).parents[1]
-    shutil.copy(root / "__init__.py", SOURCE)
+    for module in ("__init__.py", "adapter.py"):
+        shutil.copy(root / module, SOURCE)
     for floor in ("core", "references", "cases", "reports"):
         shutil.copytree(root / floor, SOURCE / floor, ignore=shutil.ignore_patterns("__pycache__", "out"))
 

@@ -120,6 +120,9 @@ def api() -> Pages:
     root = __name__.partition(".")[0]
     public = f"# {root}\n\nThe names to import from `{root}`; the other pages have every module.\n"
     out: Pages = {"api/index.md": f"{public}\n::: {root}\n    options:\n      heading_level: 2\n"}
+    options = "    options:\n      heading_level: 2\n      show_submodules: false\n"
+    adapter = "# southwell.adapter\n\nThe stable import for authors of codes.\n"
+    out["api/adapter.md"] = f"{adapter}\n::: {root}.adapter\n{options}"
     for floor, what in FLOORS.items():
         package = import_module(f"{root}.{floor}")
         walked = (m.name for m in walk_packages(package.__path__, f"{root}.{floor}.") if not m.ispkg)

@@ -250,6 +250,9 @@ def test_the_api_is_filled_from_docstrings_without_internals(built: Path) -> Non
     pages = {path.stem: path.read_text(encoding="utf-8") for path in (built / "api").glob("*.html")}
     assert "A rotating blade on its hub; properties vary linearly between stations." in pages["core"]
     assert "A rotating blade on its hub; properties vary linearly between stations." in pages["index"]
+    objects = {name: text.count('class="doc doc-heading"') for name, text in pages.items()}
+    least = {"adapter": 15, "core": 400, "references": 400, "cases": 800, "reports": 300}
+    assert all(objects[name] >= count for name, count in least.items()), objects
     for text in pages.values():
         assert not re.search(r'id="[\w.]*__\w+__', text)
         assert "Built-in" not in text

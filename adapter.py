@@ -1,0 +1,47 @@
+"""What an author of a code imports: this module keeps its names between versions; others may move.
+
+::
+
+    from southwell.adapter import BladeAdapter, CodeError, Effects, Independence, Modes, STATIONS, sample
+
+The rules that an adapter follows are those of ``BladeAdapter`` and ``MechanismAdapter``; `southwell conform NAME` checks them.
+"""
+
+from .core import multibody
+from .core.blade import Blade, clamped, coupled, mass_at, sample, stiffness_at, straight, twist_at, uniform
+from .core.effects import Effects
+from .core.mechanism.description import Mechanism
+from .core.modes import STATIONS, Modes
+from .references.protocol.fingerprint import Fingerprint
+from .references.protocol.interface import (
+    CORE,
+    BladeAdapter,
+    CodeError,
+    Independence,
+    MechanismAdapter,
+    MechanismModes,
+)
+
+__all__ = [
+    "CORE",
+    "STATIONS",
+    "Blade",
+    "BladeAdapter",
+    "CodeError",
+    "Effects",
+    "Fingerprint",
+    "Independence",
+    "Mechanism",
+    "MechanismAdapter",
+    "MechanismModes",
+    "Modes",
+    "clamped",
+    "coupled",
+    "mass_at",
+    "multibody",
+    "sample",
+    "stiffness_at",
+    "straight",
+    "twist_at",
+    "uniform",
+]
