@@ -97,14 +97,14 @@ def sampled(evaluate: Callable[[float], Matrices], omega: float, names: tuple[st
     Raises:
         PeriodicError: more than ``MAX_AZIMUTHS`` azimuths are needed.
     """
-    known: dict[float, Matrices] = {}
+    evaluated: dict[float, Matrices] = {}
     count = 8
     while count <= MAX_AZIMUTHS:
         fractions = np.arange(count) / count
         for x in fractions:
-            if float(x) not in known:
-                known[float(x)] = evaluate(2.0 * np.pi * float(x))
-        rows = [known[float(x)] for x in fractions]
+            if float(x) not in evaluated:
+                evaluated[float(x)] = evaluate(2.0 * np.pi * float(x))
+        rows = [evaluated[float(x)] for x in fractions]
         M, C, K = (np.array([row[k] for row in rows]) for k in range(3))
         system = from_samples(M, C, K, omega, names)
         if system.harmonics <= count // 4:

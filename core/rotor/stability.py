@@ -32,8 +32,8 @@ class Limit(NamedTuple):
 
 def grows(system: Periodic) -> bool:
     """Whether a solution grows by more than the error of its exponent."""
-    found = floquet(system)
-    return bool((found.values.real > np.maximum(found.error, GROWS * abs(system.omega))).any())
+    solution = floquet(system)
+    return bool((solution.values.real > np.maximum(solution.error, GROWS * abs(system.omega))).any())
 
 
 def limits(system: Callable[[float], Periodic], speeds: Sequence[float], accuracy: float = ACCURACY) -> list[Limit]:

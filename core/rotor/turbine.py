@@ -297,10 +297,10 @@ def _turn(psi: float) -> tuple[Array, Array, Array]:
     return first, second, third
 
 
-def _check_constant(here: tuple[Array, ...], there: tuple[Array, ...], rate: float) -> None:
+def _check_constant(first: tuple[Array, ...], second: tuple[Array, ...], rate: float) -> None:
     """Check that the rotor's equations are the same at two azimuths, for motions at ``rate``, rad/s; never averaged."""
-    size = np.sqrt(sum(rate ** (2 - k) * np.abs(np.diagonal(part)) for k, part in enumerate(here)))
-    for k, (a, b) in enumerate(zip(here, there, strict=True)):
+    size = np.sqrt(sum(rate ** (2 - k) * np.abs(np.diagonal(part)) for k, part in enumerate(first)))
+    for k, (a, b) in enumerate(zip(first, second, strict=True)):
         change = float((rate ** (2 - k) * np.abs(a - b) / np.outer(size, size)).max())
         if change > CONSTANT:
             raise PeriodicError(

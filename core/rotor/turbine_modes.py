@@ -83,9 +83,9 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         rigid = np.zeros((len(a.M), 1))
         rigid[list(a.shaft)] = 1.0
     with one_thread():
-        found = eigen.damped(a.M, a.C, a.K, None, (rigid, rigid) if free else None)
-    keep = np.flatnonzero(np.abs(found.values) > RIGID * a.blade.frequencies[0])[:count]
-    values, vectors = found.values[keep], found.vectors[:, keep]
+        eigenpairs = eigen.damped(a.M, a.C, a.K, None, (rigid, rigid) if free else None)
+    keep = np.flatnonzero(np.abs(eigenpairs.values) > RIGID * a.blade.frequencies[0])[:count]
+    values, vectors = eigenpairs.values[keep], eigenpairs.vectors[:, keep]
     labels, numbers = _labels(made, a)
     energies = _energies(made, a, vectors, numbers, len(labels))
     names, directions = [], np.zeros(len(values))

@@ -37,8 +37,8 @@ class Fingerprint:
 def rigid_motions(position: Array) -> Array:
     """(…, 3, 6) displacements of points ``position`` (…, 3) by unit motions along, then about, x, y, z of the hub."""
     x, y, z = np.moveaxis(position, -1, 0)
-    none, one = np.zeros_like(x), np.ones_like(x)
-    rows = ((one, none, none, none, z, -y), (none, one, none, -z, none, x), (none, none, one, y, -x, none))
+    zeros, ones = np.zeros_like(x), np.ones_like(x)
+    rows = ((ones, zeros, zeros, zeros, z, -y), (zeros, ones, zeros, -z, zeros, x), (zeros, zeros, ones, y, -x, zeros))
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 
 

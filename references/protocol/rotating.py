@@ -56,9 +56,9 @@ def _transformed(matrices: Matrices, omega: float, groups: Sequence[Sequence[int
     M, C, K = matrices
     T, turn = _fourier(len(M), groups, psi)
     D = 1j * omega * turn  # q̇ = T (ȧ + D a), q̈ = T (ä + 2 D ȧ + D² a)
-    left = T.conj().T
-    mass, damping = left @ M @ T, left @ C @ T
-    return mass, damping + 2.0 * mass * D, left @ K @ T + damping * D + mass * D**2
+    adjoint = T.conj().T
+    mass, damping = adjoint @ M @ T, adjoint @ C @ T
+    return mass, damping + 2.0 * mass * D, adjoint @ K @ T + damping * D + mass * D**2
 
 
 def _fourier(n: int, groups: Sequence[Sequence[int]], psi: float) -> tuple[Complex, Array]:

@@ -232,17 +232,17 @@ def _fingerprint_replies(code: Any, blade: Blade, elements: Sequence[int]) -> It
         return
     for number in elements:
         try:
-            found = code.fingerprint(blade, number)
+            answer = code.fingerprint(blade, number)
         except CodeError as error:
             yield failed("refused", one_line(error))
         except BaseException as error:
             yield foreign_exception(error)
         else:
-            wrong = found is not None and not isinstance(found, Fingerprint)
+            wrong = answer is not None and not isinstance(answer, Fingerprint)
             yield (
-                failed("nonsense", f"fingerprint(): {type(found).__name__}, not Fingerprint")
+                failed("nonsense", f"fingerprint(): {type(answer).__name__}, not Fingerprint")
                 if wrong
-                else {"fingerprint": found and encode(found)}
+                else {"fingerprint": answer and encode(answer)}
             )
 
 
