@@ -196,8 +196,8 @@ def assemble(made: Machine, omega: float) -> Assembled:
     with one_thread():
         state = balance(made.blade_mesh, omega, np.zeros(3), ALL_EFFECTS)
         blade = component.reduced(made.blade_mesh, state, made.resolution.blade_modes)
-    rotor = _rotor(turbine, blade, omega, 0.0)
-    _check_constant(rotor, _rotor(turbine, blade, omega, 0.7), abs(omega) + float(blade.frequencies[0]))
+    coupled = rotor(turbine, blade, omega, 0.0)
+    _check_constant(coupled, rotor(turbine, blade, omega, 0.7), abs(omega) + float(blade.frequencies[0]))
     t, r, n = made.tower.size, blade.size, turbine.blades
     drive = turbine.drivetrain
     rigid = np.isinf(drive.stiffness)
@@ -215,7 +215,7 @@ def assemble(made: Machine, omega: float) -> Assembled:
     J = np.zeros((n * r + 6, size))
     J[np.arange(n * r), blades.ravel()] = 1.0
     J[n * r :] = hub_twist
-    M, C, K = (J.T @ part @ J for part in rotor)
+    M, C, K = (J.T @ part @ J for part in coupled)
     for total, part in zip((M, C, K), (made.tower.M, made.tower.C, made.tower.K), strict=True):
         total[:t, :t] += part
     M += drive.generator * drive.gear_ratio**2 * np.outer(generator, generator)
@@ -261,7 +261,7 @@ def _tower(turbine: Turbine, how: Resolution, carried: Array) -> Mesh:
     return attached(mesh, len(mesh.nodes) - 1, top, np.eye(4), stiffness=stiffness)
 
 
-def _rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple[Array, Array, Array]:
+def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple[Array, Array, Array]:
     """M, C, K (nr + 6, nr + 6) of hub and blades over (multi-blade coordinates, ξ_H) at the azimuth ψ of blade 0."""
     n, r = turbine.blades, blade.size
     T, R = multiblade.transformation(psi, n), multiblade.rate(n)
