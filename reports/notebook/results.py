@@ -2,6 +2,7 @@
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
@@ -15,6 +16,7 @@ from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered, participation
 from ...references.protocol.interface import MOTIONS
+from ..campbell import interactive as plotly
 from ..campbell import page, tables
 from ..campbell.figure import lines
 from ..shared import summary
@@ -135,8 +137,16 @@ class CampbellResult:
         """The verdict on the margins in one line."""
         return tables.verdict(self.diagram, self.units)
 
-    def plot(self, axes: Axes | None = None) -> Axes:
-        """Draw frequencies over rotor speed, the lines of n per revolution and the operating range; return the axes."""
+    def plot(self, axes: Axes | None = None, interactive: bool | None = None) -> Any:
+        """Draw frequencies over rotor speed, the lines of n per revolution and the operating range.
+
+        Returns a Plotly figure if ``interactive``, else Matplotlib's axes; by default interactive without ``axes`` where Plotly
+        (the extra ``interactive``) is installed.
+        """
+        if interactive is None:
+            interactive = axes is None and plotly.installed()
+        if interactive:
+            return plotly.lines(self.diagram, self.units)
         axes = axes or _axes(7.0, 4.5)
         return lines(axes, self.diagram, self.units)
 

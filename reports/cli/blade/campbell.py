@@ -16,6 +16,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn
 
 from ....cases.campbell import confirmation, interpolation
 from ....cases.campbell.changes import changes as blade_changes
+from ....cases.campbell.confirmation import Confirmed
 from ....cases.campbell.diagram import Campbell, CampbellRequest, campbell, solver
 from ....cases.campbell.machine import MachineRequest
 from ....cases.campbell.required import required_margin
@@ -32,7 +33,7 @@ from ....core.blade import Blade
 from ....core.modes import Modes
 from ...campbell import changes as changes_table
 from ...campbell import confirmation as confirmation_table
-from ...campbell import page, tables
+from ...campbell import interactive, page, tables
 from ...campbell.cover import Origin
 from ...campbell.tables import Sheet
 from ...documents import html as as_html
@@ -140,7 +141,8 @@ def command(
     strict
         Status 1 if a margin is violated or could not be judged.
     html
-        Also write campbell.html: one file with its figures.
+        Also write campbell.html: one file with its figures; and campbell-interactive.html with the extra `interactive`
+        (Plotly): hover for frequency, uncertainty and confirming codes, zoom, hide lines, animated mode shapes.
     pdf
         Also write campbell.pdf; requires the extra `pdf` (Typst).
     blade_only
@@ -197,9 +199,10 @@ def command(
         folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
         _check(out)
         diagram = solve(subject.blade, request, units, workers)
-        extra = []
+        extra, confirmed = [], ()
         if verify:
-            extra.append(confirmed_by(diagram, subject, units))
+            confirmed = confirmed_by(diagram, subject, units)
+            extra.append(confirmation_table.sheet(diagram, confirmed, units))
         if other:
             found = blade_changes(subject.blade, other.blade, speeds, modes, elements)
             extra.append(changes_table.sheet(found, other.blade.name, units))
@@ -215,6 +218,10 @@ def command(
             written = page.write(diagram, folder, units, line, origin, extra, files)
             if html:
                 written = (*written, as_html.write(written[0]))
+                if interactive.installed():
+                    codes = {c.track: ", ".join(c.codes) or "none" for c in confirmed}
+                    shown = page.shapes_at(diagram)
+                    written = (*written, interactive.write(diagram, folder, units, shown, codes))
             if pdf:
                 written = (*written, as_pdf.write(written[0]))
         names = ", ".join(path.name for path in written)
@@ -222,8 +229,8 @@ def command(
     return int(strict and not kept)
 
 
-def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
-    """Run all codes; return the table of the codes that confirm each line."""
+def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> tuple[Confirmed, ...]:
+    """Run all codes; return the codes that confirm each line."""
     case = default_case(
         subject.blade,
         confirmation.speeds(diagram),
@@ -233,7 +240,7 @@ def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> Sheet:
     )
     request = Request((case,), faults="none", execution=Execution(workers=os.cpu_count() or 1))
     run = pipeline.verify(request, Progressing())
-    return confirmation_table.sheet(diagram, confirmation.confirmations(diagram, run), units)
+    return confirmation.confirmations(diagram, run)
 
 
 def _check(out: Path) -> None:
