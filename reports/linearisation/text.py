@@ -1,12 +1,13 @@
 """A judgement of linearisations for the terminal and as plain data: verdict, findings, named modes."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 from rich.table import Table
 
 from ...cases.linearisation.findings import DEFECT, LIMIT, NOTE, Finding
 from ...cases.linearisation.judged import NO, OPEN, YES, JudgedSet, Judgement, TrackedMode
+from ...cases.linearisation.machine import Beside
 from ...cases.linearisation.mode_tables import ModeTable
 from ...cases.linearisation.modes import Mode
 from ..shared.table_columns import tables
@@ -95,6 +96,23 @@ def _listed(table: ModeTable, width: int, every: bool) -> Iterator[Table]:
     yield from tables(head, rows if every else rows[:MOST], width, f"{table.name}: frequency in Hz")
 
 
+def decks(judgement: Judgement, beside: Sequence[Sequence[Beside]], width: int) -> Iterator[Table]:
+    """Tables of the modes of each operating point beside those of the turbine's deck."""
+    head = ("mode", "Hz", "± %", "deck Hz", "difference %")
+    for judged, pairs in zip(judgement.sets, beside, strict=False):
+        rows = [
+            (
+                p.mode.name,
+                f"{p.mode.frequency:.5g}",
+                _uncertainty(p.mode),
+                f"{p.frequency:.5g}",
+                f"{100 * p.difference:+.2g}",
+            )
+            for p in pairs
+        ]
+        yield from tables(head, rows, width, f"{judged.each.name}: {_rpm(judged)}, beside the deck in vacuo")
+
+
 def _structural(track: TrackedMode) -> bool:
     return any(mode is not None and mode.structural > 0.5 for mode in track.at)
 
@@ -118,8 +136,11 @@ def _count(n: int, what: str, several: str = "") -> str:
     return f"{n} {what if n == 1 else several or what + 's'}"
 
 
-def plain(judgement: Judgement) -> dict[str, object]:
-    """The judgement as data for JSON."""
+def plain(judgement: Judgement, beside: Sequence[Sequence[Beside]] = ()) -> dict[str, object]:
+    """The judgement as data for JSON; ``beside``: the modes of each operating point beside those of the deck."""
+    frequencies = [{pair.mode.name: pair.frequency for pair in pairs} for pairs in beside] or [
+        {} for _ in judgement.sets
+    ]
     return {
         "verdict": judgement.verdict,
         "findings": [_plain_finding(finding) for finding in judgement.findings],
@@ -130,9 +151,9 @@ def plain(judgement: Judgement) -> dict[str, object]:
                 "omega_rad_s": judged.each.omega,
                 "wind_speed_m_s": _finite(judged.each.files[0].wind_speed),
                 "method": judged.method,
-                "modes": [_plain_mode(mode) for mode in judged.modes],
+                "modes": [_plain_mode(mode, deck.get(mode.name)) for mode in judged.modes],
             }
-            for judged in judgement.sets
+            for judged, deck in zip(judgement.sets, frequencies, strict=True)
         ],
     }
 
@@ -148,7 +169,7 @@ def _plain_finding(finding: Finding) -> dict[str, object]:
     }
 
 
-def _plain_mode(mode: Mode) -> dict[str, object]:
+def _plain_mode(mode: Mode, deck: float | None) -> dict[str, object]:
     return {
         "name": mode.name,
         "frequency_hz": mode.frequency,
@@ -156,6 +177,7 @@ def _plain_mode(mode: Mode) -> dict[str, object]:
         "relative_uncertainty": _finite(mode.relative_uncertainty),
         "participation": dict(mode.participation),
         "structural": mode.structural,
+        "deck_frequency_hz": deck,
     }
 
 

@@ -3,11 +3,16 @@
 import json
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from southwell.cases.input.readers.turbine import read
+from southwell.core.rotor.turbine import machine
+from southwell.core.rotor.turbine_modes import turbine_modes
 from southwell.reports.cli.app import main
 from southwell.tests.support.linearised_defects import exchanged_blades, healthy
 from southwell.tests.support.linearised_machines import Lin, Machine
+from southwell.tests.support.turbine_decks import deck
 
 
 def write(folder: Path, lins: list[Lin], name: str = "case") -> list[str]:
@@ -85,3 +90,25 @@ def test_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert len(point["files"]) == 5
     assert point["modes"][0]["name"] == "tower side-side 1"
     assert point["modes"][0]["frequency_hz"] == pytest.approx(0.3294, rel=1e-3)
+
+
+def test_a_deck_is_listed_beside(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = write(tmp_path, healthy(n=1))
+    fst = str(deck(tmp_path, free=True))
+    _, out, _ = southwell(capsys, *files, "--fst", fst)
+    assert "beside the deck" in out
+    _, out, _ = southwell(capsys, *files, "--fst", fst, "--json")
+    modes = {mode["name"]: mode for mode in json.loads(out)["operating_points"][0]["modes"]}
+    expected = turbine_modes(machine(read(Path(fst)).turbine), 1.1, 20)
+    for name, own in (("tower fore-aft 1", "1st tower fore-aft"), ("flapwise 1 collective", "1st flap collective")):
+        frequency = expected.frequencies[expected.names.index(own)] / (2 * np.pi)
+        assert modes[name]["deck_frequency_hz"] == pytest.approx(frequency)
+    assert modes["yaw"]["deck_frequency_hz"] is not None
+
+
+def test_a_blade_is_no_deck_of_a_turbine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    files = write(tmp_path, healthy(n=1))
+    deck(tmp_path)
+    for name in ("blade.dat", "absent.fst"):
+        status, out, err = southwell(capsys, *files, "--fst", str(tmp_path / name))
+        assert (status, out, err.count("\n")) == (2, "", 1)
