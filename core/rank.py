@@ -1,17 +1,14 @@
 """The rank criterion of the mechanism solver: independent constraints, and directions without stiffness."""
 
 from dataclasses import dataclass
-from typing import Any, cast
+from typing import cast
 
 import numpy as np
 import scipy.linalg
 from numpy.typing import NDArray
-from scipy.linalg import lapack
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
-
-_LAPACK: Any = lapack
 
 TOLERANCE = 1e-9
 """Singular values below this fraction of the largest count as zero, unless the errors of the matrix are known."""
@@ -88,41 +85,6 @@ def ranked(
     u, v = u / row, vt.T * column
     left, right = keep[:m], keep[:n]
     return Ranked(u[:, left], s[keep[: len(s)]], v[:, right].T, v[:, ~right], u[:, ~left])
-
-
-@dataclass(frozen=True)
-class Regular:
-    """LU factors of a matrix (n, n) of full rank, as returned by ``scipy.linalg.lu_factor``."""
-
-    factors: tuple[Array, Index]
-
-    @property
-    def null(self) -> Array:
-        """Its null space (n, 0)."""
-        return np.zeros((len(self.factors[0]), 0))
-
-    left_null = null
-
-    def solve(self, b: Array) -> Array:
-        """A⁻¹ b for b (n,) or (n, k)."""
-        return scipy.linalg.lu_solve(self.factors, b, check_finite=False)
-
-
-def factored(A: Array, error: Array | None = None) -> Regular | Ranked:
-    """Factor a matrix (n, n): by LU if its condition number proves full rank, else as ``ranked``, with this ``error``.
-
-    Since κ₁ ≥ κ₂/n, and LAPACK's estimate of κ₁ is hardly ever below a third of it (Higham, *Accuracy and Stability of
-    Numerical Algorithms*, 2002, sec. 15.3), ``10 n κ₁ < 1/TOLERANCE`` implies full rank by the criterion above.
-
-    Raises:
-        NotFiniteError: an entry is not finite.
-    """
-    check_finite(A)
-    if len(A):
-        lu, pivot, info = _LAPACK.dgetrf(A)
-        if info == 0 and _LAPACK.dgecon(lu, float(np.abs(A).sum(0).max()))[0] > 10.0 * len(A) * TOLERANCE:
-            return Regular((lu, pivot))
-    return ranked(A, error=error)
 
 
 def check_finite(A: Array) -> None:

@@ -7,7 +7,7 @@ from typing import Any, Self
 import numpy as np
 from numpy.typing import NDArray
 
-from ..rank import TOLERANCE, Ranked, Regular, check_finite, factored, ranked
+from ..rank import TOLERANCE, Ranked, check_finite, ranked
 from ..tree import dynamics, partition
 from ..tree.closure import CLOSED, close_loops
 from ..tree.kinematics import projected
@@ -127,7 +127,7 @@ class Tangent:
     """
 
     matrix: Array
-    K: Ranked | Regular
+    K: Ranked
     scale: Array
     rounding: Array
     units: Array
@@ -144,7 +144,7 @@ class Tangent:
         """
         root = np.sqrt(self.scale)
         added = np.diag(weight * self._sign(allow_unstable))
-        return -here.part.spread(factored(self.matrix + added).solve(here.reduced / root) / root)
+        return -here.part.spread(ranked(self.matrix + added).solve(here.reduced / root) / root)
 
     def is_attractor(self, allow_unstable: bool) -> bool:
         """Whether short steps of ``relaxation`` from all nearby points lead here: no eigenvalue of D⁻¹ K̂ has Re < 0."""
@@ -208,7 +208,7 @@ def tangent_at(tree: Tree, state: State, part: partition.Partition) -> Tangent:
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     scaled = reduced / root[:, None] / root
     error = np.sqrt(STIFFNESS_ROUNDING * np.maximum(least, 0.0)) / root
-    return Tangent(scaled, factored(scaled, error), root**2, rounding, units[part.free])
+    return Tangent(scaled, ranked(scaled, error=error), root**2, rounding, units[part.free])
 
 
 def rounding_at(tree: Tree, state: State, part: partition.Partition) -> Array:
