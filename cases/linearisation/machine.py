@@ -11,7 +11,7 @@ from ...core.rotor.turbine import Turbine, machine
 from ...core.rotor.turbine_modes import turbine_modes
 from ..input import files
 from ..input.errors import NO_STATE, CaseError, rad_s
-from ..input.readers import turbine as reader
+from ..input.readers.openfast import turbine as reader
 from .judged import JudgedSet
 from .modes import Mode
 

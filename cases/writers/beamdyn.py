@@ -10,9 +10,9 @@ from scipy.interpolate import CubicSpline
 from ...core.blade import Blade
 from ..input import atomic
 from ..input.errors import CaseError
-from ..input.readers.beamdyn import DAMPING
-from ..input.readers.beamdyn_axis import Axis, measured, roll
 from ..input.readers.matrices import BEAMDYN, in_axes
+from ..input.readers.openfast.beamdyn import DAMPING
+from ..input.readers.openfast.beamdyn_axis import Axis, measured, roll
 from ..input.readers.source import Mount, Unused
 from ..input.readers.text import fortran
 

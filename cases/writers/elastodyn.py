@@ -13,8 +13,8 @@ from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blad
 from ..campbell.elastodyn_shapes import polynomials
 from ..input import atomic
 from ..input.errors import CaseError
-from ..input.readers.elastodyn import COLUMNS, MULTIPLIERS
-from ..input.readers.elastodyn_unused import DAMPING
+from ..input.readers.openfast.elastodyn import COLUMNS, MULTIPLIERS
+from ..input.readers.openfast.elastodyn_unused import DAMPING
 from ..input.readers.source import Mount, Unused
 from ..input.readers.text import fortran
 

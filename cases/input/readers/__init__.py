@@ -84,16 +84,17 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
     """
     module = _BY_SUFFIX.get(path.suffix.lower())
     if module is None:
-        from . import beamdyn, bmodes, elastodyn, elastodyn_tower, fst, hawc2, other_files, text
+        from . import bmodes, hawc2, other_files, text
+        from .openfast import beamdyn, elastodyn, elastodyn_tower, fst
 
         lines = text.load(path)
         signs = (
-            ("elastodyn", elastodyn.is_blade),
-            ("elastodyn", elastodyn.is_main),
-            ("elastodyn_tower", elastodyn_tower.is_tower),
-            ("fst", fst.matches_format),
-            ("beamdyn", beamdyn.is_blade),
-            ("beamdyn", beamdyn.is_main),
+            ("openfast.elastodyn", elastodyn.is_blade),
+            ("openfast.elastodyn", elastodyn.is_main),
+            ("openfast.elastodyn_tower", elastodyn_tower.is_tower),
+            ("openfast.fst", fst.matches_format),
+            ("openfast.beamdyn", beamdyn.is_blade),
+            ("openfast.beamdyn", beamdyn.is_main),
             ("bmodes", bmodes.matches_format),
             ("hawc2", hawc2.is_st),
             ("hawc2", hawc2.is_htc),

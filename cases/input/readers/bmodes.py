@@ -16,8 +16,8 @@ from numpy.typing import NDArray
 from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, BladeError, section_mass
 from ....core.blade_checks import body_fault
 from ..errors import CaseError
-from .elastodyn import complete
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
+from .openfast.elastodyn import complete
 from .source import OPENFAST_AXES, Mount, Reading, Source
 from .text import Text, fractions, keys, leading, load, table, value, whole, word
 

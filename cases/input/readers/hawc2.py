@@ -19,9 +19,9 @@ from numpy.typing import NDArray
 from ....core.blade import Blade, BladeError
 from ..errors import CaseError
 from . import hawc2_htc
-from .elastodyn import complete
 from .hawc2_orientation import mounting
 from .matrices import HAWC2, about, bending, fault, in_axes, rotated, shearing
+from .openfast.elastodyn import complete
 from .source import Mount, Reading, Source
 from .text import ROUNDING, Table, Text, leading, load, table
 

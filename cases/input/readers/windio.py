@@ -28,10 +28,10 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
 
 from ....core.blade import AXIAL, SHEAR_Y, SHEAR_Z, TORSION
 from ..errors import CaseError
-from . import beamdyn
-from .beamdyn_axis import Axis, measured
-from .elastodyn import complete
 from .matrices import fault, mass_fault, rigid
+from .openfast import beamdyn
+from .openfast.beamdyn_axis import Axis, measured
+from .openfast.elastodyn import complete
 from .source import OPENFAST_AXES, Mount, Reading, Source, unused
 from .text import load
 from .yaml_fields import Field, fields

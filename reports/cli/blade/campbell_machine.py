@@ -9,7 +9,7 @@ import numpy as np
 from ....cases.campbell.machine import MachineRequest, machine_diagram
 from ....cases.input import files
 from ....cases.input.errors import CaseError
-from ....cases.input.readers import turbine as reader
+from ....cases.input.readers.openfast import turbine as reader
 from ....cases.input.readers.source import Mount
 from ....cases.input.writing import writable
 from ...campbell import machine as pages

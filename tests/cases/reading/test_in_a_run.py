@@ -7,7 +7,8 @@ from typing import Any
 import pytest
 
 from southwell.cases.input import blades
-from southwell.cases.input.readers import Mount, elastodyn
+from southwell.cases.input.readers import Mount
+from southwell.cases.input.readers.openfast import elastodyn
 from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, PropertyCheck, Run
 from southwell.cases.plan.request import Execution, Request

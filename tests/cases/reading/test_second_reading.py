@@ -9,7 +9,8 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import blades, readers
-from southwell.cases.input.readers import Mount, beamdyn, bmodes, elastodyn, hawc2, windio
+from southwell.cases.input.readers import Mount, bmodes, hawc2, windio
+from southwell.cases.input.readers.openfast import beamdyn, elastodyn
 from southwell.cases.reading.second import SecondReading, read_again
 from southwell.core.blade import Blade
 from southwell.references.readers import openfast as second_openfast

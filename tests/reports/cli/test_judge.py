@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from southwell.cases.input.readers.turbine import read
+from southwell.cases.input.readers.openfast.turbine import read
 from southwell.core.rotor.turbine import machine
 from southwell.core.rotor.turbine_modes import turbine_modes
 from southwell.reports.cli.app import main

@@ -12,7 +12,7 @@ from southwell.cases.input import readers
 from southwell.cases.input.readers import Mount
 from southwell.core.blade import Blade
 
-from ...cases.input.readers.test_readers_elastodyn import real
+from ...cases.input.readers.openfast.test_readers_elastodyn import real
 from .test_cli import southwell
 
 DATA = Path(__file__).parents[2] / "data" / "blades"
@@ -22,7 +22,7 @@ ON_HUB = "--hub-radius 2 --precone -2.5 --pitch 4 --pitch-convention openfast"
 
 def frequencies(blade: Blade) -> np.ndarray:
     """At 5 and 15 rpm, rad/s."""
-    return np.array([modes(blade, omega, 20, 8).frequencies for omega in (np.pi / 6, np.pi / 2)])
+    return np.array([modes(blade, omega, elements=20, modes=8).frequencies for omega in (np.pi / 6, np.pi / 2)])
 
 
 @pytest.mark.parametrize(

@@ -11,7 +11,8 @@ from scipy.integrate import trapezoid
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import sections
-from southwell.cases.input.readers import Mount, bmodes, elastodyn, hawc2, southwell_toml
+from southwell.cases.input.readers import Mount, bmodes, hawc2, southwell_toml
+from southwell.cases.input.readers.openfast import elastodyn
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import modes
 from southwell.tests.support.blade_files import assert_same, real

@@ -7,7 +7,7 @@ import pytest
 from southwell.cases.campbell.machine import MachineRequest, machine_diagram
 from southwell.cases.campbell.required import RequiredMargin
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import turbine
+from southwell.cases.input.readers.openfast import turbine
 from southwell.reports.cli import app
 from southwell.tests.support.turbine_decks import deck
 

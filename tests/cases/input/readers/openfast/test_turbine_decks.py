@@ -9,7 +9,7 @@ import pytest
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import turbine
+from southwell.cases.input.readers.openfast import turbine
 from southwell.core import solve
 from southwell.core.rotor.turbine import machine, rigid_rotor
 from southwell.core.rotor.turbine_modes import turbine_modes

@@ -11,7 +11,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.tests.support.blade_files import assert_same
 
-DATA = Path(__file__).parents[3] / "data" / "blades"
+DATA = Path(__file__).parents[4] / "data" / "blades"
 
 FST = """\
 ------- OpenFAST INPUT FILE -------------------------------------------

@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ....core.space.spatial import rotation
+from .....core.space.spatial import rotation
 from .beamdyn_axis import measured
 
 Array = NDArray[np.float64]

@@ -8,12 +8,13 @@ import pytest
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import Mount, elastodyn
+from southwell.cases.input.readers import Mount
+from southwell.cases.input.readers.openfast import elastodyn
 from southwell.cases.writers import elastodyn as elastodyn_write
 from southwell.core.blade import mass_at, uniform_blade
 from southwell.tests.support.blade_files import assert_same, real
 
-DATA = Path(__file__).parents[3] / "data" / "blades"
+DATA = Path(__file__).parents[4] / "data" / "blades"
 BLADE, MAIN = DATA / "elastodyn_blade.dat", DATA / "elastodyn_main.dat"
 MOUNT = Mount(length=50.0, hub_radius=2.0)
 

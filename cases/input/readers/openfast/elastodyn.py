@@ -15,12 +15,12 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ..errors import CaseError
+from .....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ...errors import CaseError
+from ..matrices import about
+from ..source import OPENFAST_AXES, Mount, Reading, Source
+from ..text import Text, fractions, keys, leading, load, table, tokens, value, whole, word
 from . import elastodyn_unused, fast7_offsets
-from .matrices import about
-from .source import OPENFAST_AXES, Mount, Reading, Source
-from .text import Text, fractions, keys, leading, load, table, tokens, value, whole, word
 
 Array = NDArray[np.float64]
 

@@ -9,13 +9,14 @@ from scipy.interpolate import CubicSpline
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import Mount, beamdyn, elastodyn
+from southwell.cases.input.readers import Mount
+from southwell.cases.input.readers.openfast import beamdyn, elastodyn
 from southwell.cases.writers import beamdyn as beamdyn_write
 from southwell.core.blade import straight
 from southwell.core.element.sections import frames
 from southwell.tests.support.blade_files import assert_same, real
 
-DATA = Path(__file__).parents[3] / "data" / "blades"
+DATA = Path(__file__).parents[4] / "data" / "blades"
 BLADE, MAIN, OLD = DATA / "beamdyn_blade.dat", DATA / "beamdyn_main.dat", DATA / "beamdyn_old_main.dat"
 Z = np.array([0.0, 10, 20, 30, 40])
 X, Y = np.array([0, 0.1, 0, -0.5, -1.5]), np.array([0, -0.05, -0.1, 0, 0.4])

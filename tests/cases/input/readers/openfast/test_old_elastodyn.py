@@ -13,7 +13,7 @@ from southwell.cases.input.readers import Mount
 from southwell.core.blade import Blade, section_mass, section_stiffness
 from southwell.tests.support.blade_files import assert_same
 
-DATA = Path(__file__).parents[3] / "data" / "blades"
+DATA = Path(__file__).parents[4] / "data" / "blades"
 BLADE, MAIN = DATA / "fast7_blade.dat", DATA / "fast7_main.fst"
 MOUNT = Mount(length=40.0, hub_radius=1.5)
 OFFSETS = ("PrecrvRef", "PreswpRef", "FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")
@@ -92,8 +92,8 @@ def test_an_axis_parallel_to_the_pitch_axis_is_a_beam_with_its_mass_off_its_axis
         mass=np.stack([m, m]),
         twist=np.zeros(2),
     )
-    found = modes(readers.read(path, MOUNT), 0.0, 20, 6).frequencies
-    np.testing.assert_allclose(found, modes(by_hand, 0.0, 20, 6).frequencies, rtol=1e-9)
+    found = modes(readers.read(path, MOUNT), 0.0, elements=20, modes=6).frequencies
+    np.testing.assert_allclose(found, modes(by_hand, 0.0, elements=20, modes=6).frequencies, rtol=1e-9)
 
 
 def test_the_stations_are_arc_lengths_of_the_axis(tmp_path: Path) -> None:

@@ -9,11 +9,11 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ..errors import CaseError
+from .....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ...errors import CaseError
+from ..source import Mount, Reading, Source, Unused, unused
+from ..text import Text, fractions, keys, leading, load, number, table, tokens, value, whole, word
 from . import elastodyn
-from .source import Mount, Reading, Source, Unused, unused
-from .text import Text, fractions, keys, leading, load, number, table, tokens, value, whole, word
 
 NAME = "ElastoDyn tower"
 AXES = "x up, z downwind, y = z × x"

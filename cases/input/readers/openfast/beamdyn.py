@@ -16,14 +16,14 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ....core.blade import Blade, BladeError
-from ....core.blade_checks import follows
-from ..errors import CaseError
+from .....core.blade import Blade, BladeError
+from .....core.blade_checks import follows
+from ...errors import CaseError
+from ..matrices import BEAMDYN, fault, in_axes, mass_fault
+from ..source import OPENFAST_AXES, Mount, Reading, Source, Unused, unused
+from ..text import ROUNDING, Table, Text, fractions, keys, leading, load, row, table, tokens, value, whole, word
 from . import elastodyn, elastodyn_unused
 from .beamdyn_axis import Axis, line, measured, resolved, roll
-from .matrices import BEAMDYN, fault, in_axes, mass_fault
-from .source import OPENFAST_AXES, Mount, Reading, Source, Unused, unused
-from .text import ROUNDING, Table, Text, fractions, keys, leading, load, row, table, tokens, value, whole, word
 
 Array = NDArray[np.float64]
 

@@ -12,14 +12,14 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.rotor.turbine import Drivetrain, Turbine, shaft_pose
-from ....core.space import spatial as sp
-from ....core.space.inertia import transformed
-from ..errors import CaseError
+from .....core.rotor.turbine import Drivetrain, Turbine, shaft_pose
+from .....core.space import spatial as sp
+from .....core.space.inertia import transformed
+from ...errors import CaseError
+from ..source import Mount, Source, Unused, unused
+from ..text import Text, keys, load, number, value, whole
 from . import elastodyn_tower as tower_reader
 from . import fst
-from .source import Mount, Source, Unused, unused
-from .text import Text, keys, load, number, value, whole
 
 NAME = "OpenFAST turbine"
 AXES = "nacelle: x downwind, y to port, z up; here x = its z, y = its −y, z = its x"

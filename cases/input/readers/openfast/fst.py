@@ -10,10 +10,10 @@ import os
 from dataclasses import replace
 from pathlib import Path
 
-from ..errors import CaseError
+from ...errors import CaseError
+from ..source import Mount, Reading
+from ..text import Text, keys, load, whole, word
 from . import beamdyn, elastodyn
-from .source import Mount, Reading
-from .text import Text, keys, load, whole, word
 
 
 def matches_format(text: Text) -> bool:

@@ -2,9 +2,9 @@
 
 import math
 
+from ..source import Unused, unused
+from ..text import Table, Text, keys, number
 from .fast7_offsets import COLUMNS as OFFSETS
-from .source import Unused, unused
-from .text import Table, Text, keys, number
 
 DAMPING = "BldFlDmp(1), BldFlDmp(2), BldEdDmp(1)"
 SHAPES = tuple(f"{name}{power}" for name in ("BldFl1Sh", "BldFl2Sh", "BldEdgSh") for power in range(2, 7))
