@@ -59,7 +59,7 @@ COMMANDS = (
     (
         VERIFY,
         "validate",
-        "verification.validation_page:command",
+        "validation.page:command",
         "Compare models of measured rotors with their measurements.",
     ),
     (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),

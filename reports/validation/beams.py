@@ -10,7 +10,7 @@ from ...cases.validation import rotating_beams
 from ...cases.validation.points import Point
 from ..shared.markdown import plain, table
 from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house
-from .validation_tables import by_line, every
+from .tables import by_line, every
 
 FIGURE = "validation-beams.svg"
 

@@ -8,7 +8,7 @@ from southwell.cases.judge.measured import Validation
 from southwell.cases.validation import comparison, rotating_beams
 from southwell.cases.validation.comparison import SPEEDS, VARIED_AT, Simulated, points
 from southwell.cases.validation.points import Point
-from southwell.reports.verification import validation_page
+from southwell.reports.validation import page
 
 NAMES = {"FS 1": 1.0, "FA 1": 1.02, "EA 1": 1.7, "FA 2": 2.1, "FS 2": 2.14, "EA 2": 3.5, "FS 3": 3.3, "FA 3": 3.35}
 
@@ -39,10 +39,10 @@ def test_every_measured_point_is_on_the_page() -> None:
     found = points(model(0.02))
     assert len(found) == sum(len(line["points"]) for line in comparison.data()["lines"])
     beams = {name: tuple(of_beam(name)) for name in rotating_beams.BEAMS}
-    page, *drawn = validation_page.pages(model(0.02), found, beams).values()
-    stated = page.count("| model error not visible at") + page.count("| model error visible (at")
+    text, *drawn = page.pages(model(0.02), found, beams).values()
+    stated = text.count("| model error not visible at") + text.count("| model error visible (at")
     assert stated == len(found) + sum(map(len, beams.values()))
-    assert "contradicts" not in page.replace("does not confirm or contradict core", "")
+    assert "contradicts" not in text.replace("does not confirm or contradict core", "")
     assert [figure.startswith("<svg") for figure in drawn] == [True, True]
 
 

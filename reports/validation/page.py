@@ -17,8 +17,7 @@ from ...cases.validation.points import Point
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house, svg
-from . import validation_beams
-from .validation_tables import by_line, every
+from .tables import by_line, every
 
 PAGE, FIGURE = "validation.md", "validation.svg"
 
@@ -53,8 +52,8 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequence[Point]]) -> dict[str, str]:
     """The page and its figures by file name; ``beams`` has the points of each kind of rotating beam."""
     parts = [_HEAD, _SANDIA, f"![Campbell diagram]({FIGURE})", table(summary(points)), _MODEL, every(points)]
-    parts += validation_beams.parts(beams)
-    figures = {FIGURE: svg(figure(model, points)), validation_beams.FIGURE: svg(validation_beams.figure(beams))}
+    parts += beams.parts(beams)
+    figures = {FIGURE: svg(figure(model, points)), beams.FIGURE: svg(beams.figure(beams))}
     return {PAGE: "\n\n".join(parts) + "\n", **figures}
 
 

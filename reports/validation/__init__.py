@@ -1,0 +1,1 @@
+"""Models of measured rotors against their measurements, as a page."""
