@@ -1,4 +1,4 @@
-"""Compare the mass and inertia of a code's own model with a quadrature of the stations that does not use core.
+"""Compare mass, inertia and tip flexibility of a code's own model with a quadrature of the stations that does not use core.
 
 Every code samples the stations through ``core.blade``; a model that is too heavy is therefore an error that all share, and
 their frequencies agree. Lumped masses converge with the square of the element size: a second number of elements removes
@@ -6,17 +6,18 @@ that part.
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import Blade
-from ...core.element.discretize import discretize
+from ...core.blade import Blade, clamped
+from ...core.element.discretize import discretize, divide
+from ...core.element.sections import integrate
 from ...core.space import spatial as sp
 from ...core.space.inertia import transformed
-from ...references.protocol.fingerprint import Fingerprint, of_matrix
-from ...references.readers.quadrature import weigh
+from ...references.protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
+from ...references.readers.quadrature import Mounted, bend, linear, weigh
 from ...references.readers.stations import Stations
 
 Array = NDArray[np.float64]
@@ -33,6 +34,12 @@ NAMES = (
     ("first moment of mass along y", "kg m"),
     ("first moment of mass along z", "kg m"),
     ("inertia about the rotor's axis", "kg m²"),
+)
+
+BENDS = (
+    ("tip flexibility along y", "m/N"),
+    ("tip flexibility along z", "m/N"),
+    ("tip flexibility about x", "rad/(N m)"),
 )
 
 
@@ -75,6 +82,20 @@ def stations_of(blade: Blade) -> Stations:
     return Stations("its description", blade.stations, blade.stiffness, blade.mass, blade.twist, blade.curve)
 
 
+def resolved(blade: Blade, stations: Stations) -> Stations:
+    """The sections of a second reading at the stations of the blade, with the curve and the twist of the blade.
+
+    A reader adds stations where curve or twist need them; linear interpolation between those of the file would bend otherwise.
+    """
+    if len(stations.s) == len(blade.stations):
+        return stations
+    infinite = np.isinf(stations.stiffness).any(axis=0)
+    stiffness = linear(stations.s, np.where(infinite, 0.0, stations.stiffness), blade.stations)
+    mass = linear(stations.s, stations.mass, blade.stations)
+    soft = np.where(infinite, np.inf, stiffness)
+    return Stations(stations.reader, blade.stations, soft, mass, blade.twist, blade.curve)
+
+
 def enough(blade: Blade, stations: Stations, first: Fingerprint, rotary: bool) -> bool:
     """Whether the model with the first number of elements shows no difference that a finer mesh could remove."""
     return all(abs(w.difference) <= EXACT for w in weights(blade, stations, [first], rotary))
@@ -91,32 +112,29 @@ def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rot
     """
     rows = [_differences(blade, stations, model, rotary) for model in models]
     found, expected, last = rows[-1]
-    removed = np.zeros(5)
+    removed = np.zeros(len(last))
     if len(models) == 2 and models[1].elements > models[0].elements:
         ratio = models[1].elements / models[0].elements
         removed = (last - rows[0][2]) / (ratio**2 - 1.0)
     return tuple(
         Weight(name, float(last[k] + removed[k]), abs(float(removed[k])), float(found[k]), float(expected[k]), unit)
-        for k, (name, unit) in enumerate(NAMES)
+        for k, (name, unit) in enumerate((NAMES + BENDS)[: len(last)])
     )
 
 
 def _differences(blade: Blade, stations: Stations, model: Fingerprint, rotary: bool) -> tuple[Array, Array, Array]:
-    """Values (5,) of the model and of the stations, and their relative differences."""
-    mass, first, inertia = weigh(
-        stations,
-        blade.hub_radius,
-        blade.precone,
-        blade.pitch,
-        blade.tip_mass,
-        kinks=blade.kinks,
-        start=model.start,
-        rotary=rotary,
-    )
+    """Values (5 or 8,) of the model and of the stations, and their relative differences."""
+    mounted = Mounted(stations, blade.hub_radius, blade.precone, blade.pitch, blade.kinks)
+    mass, first, inertia = weigh(mounted, blade.tip_mass, model.start, rotary)
     found = np.array([model.mass, *model.first_moments, model.rotor_inertia])
     expected = np.array([mass, *first, inertia])
     moment = mass * (blade.hub_radius + blade.length)
-    return found, expected, (found - expected) / [mass, moment, moment, moment, inertia]
+    scale = np.array([mass, moment, moment, moment, inertia])
+    if model.flexibility is not None and not np.isnan(stations.stiffness).any():
+        bent = np.array(bend(mounted))
+        found, expected = np.append(found, model.flexibility), np.append(expected, bent)
+        scale = np.append(scale, np.where(bent > 0, bent, 1.0))  # rigid torsion: both are zero
+    return found, expected, (found - expected) / scale
 
 
 ELEMENTS = 16
@@ -129,4 +147,13 @@ def of_core(blade: Blade) -> Fingerprint:
     points = mesh.beams.points
     at = mesh.nodes[mesh.parent[points.element]] @ sp.exp(points.zeta0)
     bodies = transformed(points.mass, at).sum(axis=0) + transformed(mesh.lumps, mesh.nodes).sum(axis=0)
-    return of_matrix(bodies, ELEMENTS)
+    weighed = of_matrix(bodies, ELEMENTS)
+    if not clamped(blade):
+        return weighed
+    elements = integrate(blade, divide(blade, ELEMENTS))
+    to_hub = sp.adjoint(elements.nodes[:-1])
+    at_tip = np.eye(6)
+    at_tip[:3, 3:] = -sp.skew(elements.nodes[-1, :3, 3])
+    lever = at_tip @ to_hub
+    flexibility = (lever @ elements.flexibility @ np.swapaxes(lever, 1, 2)).sum(axis=0)
+    return replace(weighed, flexibility=tip_flexibility(flexibility))

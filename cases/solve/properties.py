@@ -24,8 +24,8 @@ SHARED = "discretisation shared with Southwell's own solver"
 def of_reading(case: str, file: BladeFile | None, blade: Blade) -> tuple[list[PropertyCheck], Stations]:
     """The rows of a second reading, and the stations by which models are weighed.
 
-    Those are of the second reader if it reads the file, else as the description of the blade has them. Without a file there
-    are no rows.
+    Those are of the second reader if both readings agree, else as the description of the blade has them: a model that
+    differs then has another cause. Without a file there are no rows.
     """
     if file is None:
         return [], weighing.stations_of(blade)
@@ -55,7 +55,8 @@ def of_reading(case: str, file: BladeFile | None, blade: Blade) -> tuple[list[Pr
         )
         for p in second.properties
     ]
-    return rows, second.stations
+    same = not second.wrong
+    return rows, weighing.resolved(file.blade, second.stations) if same else weighing.stations_of(blade)
 
 
 def of_core(case: str, blade: Blade, stations: Stations, version: str) -> list[PropertyCheck]:

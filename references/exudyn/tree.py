@@ -7,6 +7,7 @@ If the blade has no moments of inertia, the segments have none about their axis,
 then semi-definite, which the eigensolver allows.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -18,7 +19,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
-from ..protocol.fingerprint import Fingerprint, of_matrix
+from ..protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import steps
@@ -74,7 +75,12 @@ class ExudynTree(BladeAdapter):
         tree = hinge_segments(blade, elements)
         exu, _container, mbs = _system(tree, 0.0, FREE_HUB)
         M, _, _ = ex.linearized(exu, mbs, still=True, full=True)
-        return of_matrix(M[:6, :6], len(tree.ends) - 1 - steps(blade), tree.start)
+        weighed = of_matrix(M[:6, :6], len(tree.ends) - 1 - steps(blade), tree.start)
+        if not clamped(blade):
+            return weighed
+        _, _, K, q = linearize(tree, 0.0)
+        tip = jacobian(tree, q, tree.reach)[-1]
+        return replace(weighed, flexibility=tip_flexibility(tip @ np.linalg.solve(K, tip.T)))
 
 
 ROTATING_HUB = (BEND_Z,)

@@ -109,6 +109,7 @@ class _Fingerprint(Struct, frozen=True, forbid_unknown_fields=True):
     rotor_inertia: float
     elements: Elements
     start: Annotated[float, Meta(ge=0)]
+    flexibility: tuple[float, float, float] | None = None
 
 
 class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
@@ -222,7 +223,8 @@ def fingerprint(data: Any) -> Fingerprint | None:
     answer = convert(data, _Fingerprint)
     for name in ("mass", "first_moments", "rotor_inertia", "start"):
         _finite(name, getattr(answer, name))
-    return Fingerprint(answer.mass, answer.first_moments, answer.rotor_inertia, answer.elements, answer.start)
+    _finite("flexibility", answer.flexibility or ())
+    return Fingerprint(**msgspec.structs.asdict(answer))
 
 
 def convert(data: Any, kind: type[T]) -> T:

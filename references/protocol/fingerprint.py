@@ -1,4 +1,4 @@
-"""What a code's own assembled model weighs: mass, first moments and inertia about the rotor's axis.
+"""What a code's own assembled model weighs and how it bends: mass, first moments, inertia, tip flexibility.
 
 They are those of the undeformed blade as a rigid body, about the hub's centre, in axes that turn with the hub: x at the
 blade's azimuth, z the rotor's axis.
@@ -25,6 +25,8 @@ class Fingerprint:
         rotor_inertia: about z, kg m².
         elements: number of elements of the model.
         start: arc length at which the model's own mass begins, m; what is before it belongs to the hub.
+        flexibility: of the clamped blade at rest: displacements of the tip along y and z by unit forces there, m/N, and its
+            rotation about x by a unit moment, rad/(N m); None if the code does not report them.
     """
 
     mass: float
@@ -32,6 +34,12 @@ class Fingerprint:
     rotor_inertia: float
     elements: int
     start: float = 0.0
+    flexibility: tuple[float, float, float] | None = None
+
+
+def tip_flexibility(matrix: Array) -> tuple[float, float, float]:
+    """Those of a flexibility (6, 6) of the tip, its displacements and rotations in the hub's axes."""
+    return float(matrix[1, 1]), float(matrix[2, 2]), float(matrix[3, 3])
 
 
 def rigid_motions(position: Array) -> Array:

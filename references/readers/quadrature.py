@@ -1,8 +1,10 @@
-"""Mass, first moments and inertia about the rotor's axis of a blade, by quadrature of its stations.
+"""Mass, first moments, inertia about the rotor's axis and tip flexibility of a blade, by quadrature of its stations.
 
 Properties are linear between stations and the reference curve is a cubic spline of the arc length, as the description of a
 blade says; sections are rotated from the blade's axes by the smallest angle to the tangent, then by the twist.
 """
+
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,52 +15,90 @@ from .stations import Stations
 
 Array = NDArray[np.float64]
 
-POINTS = np.polynomial.legendre.leggauss(5)
-"""Points and weights in each interval between stations."""
+POINTS = np.polynomial.legendre.leggauss(64)
+"""Points and weights in each interval between stations. A compliance is the inverse of a linear stiffness, which near the tip
+may fall by a factor of a hundred from one station to the next."""
 
 
-def weigh(
-    blade: Stations,
-    hub_radius: float,
-    precone: float,
-    pitch: float,
-    tip: Array,
-    *,
-    kinks: tuple[float, ...] = (),
-    start: float = 0.0,
-    rotary: bool = True,
-) -> tuple[float, Array, float]:
-    """Mass (kg), first moments (3,) (kg m) and inertia about the rotor's axis (kg m²), about the hub's centre.
+@dataclass(frozen=True)
+class Mounted:
+    """Stations on a hub.
 
-    Args:
-        blade: the stations.
+    Attributes:
+        stations: the stations.
         hub_radius: from the hub's centre to the root along the coned axis, m.
         precone: of the blade's axis towards the rotor's axis, rad.
         pitch: of the whole blade, rad.
-        tip: (6, 6) inertia of a rigid body at the tip, in the tip section's axes.
         kinks: arc lengths between which the curve is smooth, m.
+    """
+
+    stations: Stations
+    hub_radius: float
+    precone: float
+    pitch: float
+    kinks: tuple[float, ...] = ()
+
+
+def weigh(blade: Mounted, tip: Array, start: float = 0.0, rotary: bool = True) -> tuple[float, Array, float]:
+    """Mass (kg), first moments (3,) (kg m) and inertia about the rotor's axis (kg m²), about the hub's centre.
+
+    Args:
+        blade: the stations on their hub.
+        tip: (6, 6) inertia of a rigid body at the tip, in the tip section's axes.
         start: arc length at which to begin, m.
         rotary: whether sections have moments of inertia about their mass centres.
     """
-    cuts = np.unique(np.append(blade.s[blade.s > start], start))
+    s, weight = _points(blade.stations.s, start)
+    bodies = np.concatenate([weight[:, None, None] * linear(blade.stations.s, blade.stations.mass, s), tip[None]])
+    place, axes = _frames(blade, np.append(s, blade.stations.s[-1]))
+    return _sum(bodies, axes, place, rotary)
+
+
+def bend(blade: Mounted) -> tuple[float, float, float]:
+    """Displacements of the tip of a clamped blade along y and z by unit forces, m/N, and rotation about x, rad/(N m).
+
+    The axes are those of the hub. The virtual work of a section is Bᵀ C B with the strains B due to a unit load at the tip.
+    """
+    s, weight = _points(blade.stations.s, 0.0)
+    place, axes = _frames(blade, np.append(s, blade.stations.s[-1]))
+    stiffness = blade.stations.stiffness
+    soft = np.flatnonzero(np.isfinite(np.diagonal(stiffness, axis1=1, axis2=2)).all(axis=0))
+    compliance = np.linalg.inv(linear(blade.stations.s, stiffness[:, soft[:, None], soft], s))
+    arm = place[-1] - place[:-1]
+    out = []
+    for force, moment in (([0.0, 1.0, 0.0], [0.0] * 3), ([0.0, 0.0, 1.0], [0.0] * 3), ([0.0] * 3, [1.0, 0.0, 0.0])):
+        here = np.concatenate([np.tile(force, (len(s), 1)), moment + np.cross(arm, force)], axis=1)
+        load = np.einsum("nji,nkj->nki", axes[:-1], here.reshape(-1, 2, 3)).reshape(-1, 6)[:, soft]
+        out.append(float(np.einsum("n,ni,nij,nj->", weight, load, compliance, load)))
+    return out[0], out[1], out[2]
+
+
+def _points(stations: Array, start: float) -> tuple[Array, Array]:
+    """Arc lengths and weights, m, from ``start`` to the tip."""
+    cuts = np.unique(np.append(stations[stations > start], start))
     x, w = POINTS
     half = 0.5 * np.diff(cuts)[:, None]
-    s = (cuts[:-1, None] + half * (1 + x)).ravel()
-    weight = (half * w).ravel()
-    section = np.moveaxis(
-        np.array([[np.interp(s, blade.s, blade.mass[:, i, j]) for j in range(6)] for i in range(6)]), 2, 0
-    )
-    bodies = np.concatenate([weight[:, None, None] * section, tip[None]])
-    at = np.append(s, blade.s[-1])
-    place, tangent = _curve(blade, kinks, at)
+    return (cuts[:-1, None] + half * (1 + x)).ravel(), (half * w).ravel()
+
+
+def linear(stations: Array, values: Array, s: Array) -> Array:
+    """Values (n, …) at the stations, linear between them, at arc lengths ``s`` (k,)."""
+    k = np.clip(np.searchsorted(stations, s, side="right") - 1, 0, len(stations) - 2)
+    t = ((s - stations[k]) / (stations[k + 1] - stations[k])).reshape(-1, *(1,) * (values.ndim - 1))
+    return values[k] + t * (values[k + 1] - values[k])
+
+
+def _frames(blade: Mounted, s: Array) -> tuple[Array, Array]:
+    """Positions (k, 3) from the hub's centre and axes (k, 3, 3) of sections, in the hub's axes."""
+    place, tangent = _curve(blade.stations, blade.kinks, s)
     across = np.cross([1.0, 0.0, 0.0], tangent)
     sine = np.linalg.norm(across, axis=1)
     vector = across * np.divide(np.arctan2(sine, tangent[:, 0]), sine, out=np.ones_like(sine), where=sine > 0)[:, None]
-    turn = Rotation.from_rotvec(np.outer(np.interp(at, blade.s, blade.twist), [1.0, 0.0, 0.0]))
-    mounted = Rotation.from_rotvec([0.0, -precone, 0.0]) * Rotation.from_rotvec([pitch, 0.0, 0.0])
+    turn = Rotation.from_rotvec(np.outer(np.interp(s, blade.stations.s, blade.stations.twist), [1.0, 0.0, 0.0]))
+    cone = Rotation.from_rotvec([0.0, -blade.precone, 0.0])
+    mounted = cone * Rotation.from_rotvec([blade.pitch, 0.0, 0.0])
     axes = (mounted * Rotation.from_rotvec(vector) * turn).as_matrix()
-    root = Rotation.from_rotvec([0.0, -precone, 0.0]).apply([hub_radius, 0.0, 0.0])
-    return _sum(bodies, axes, root + mounted.apply(place), rotary)
+    return cone.apply([blade.hub_radius, 0.0, 0.0]) + mounted.apply(place), axes
 
 
 def _curve(blade: Stations, kinks: tuple[float, ...], s: Array) -> tuple[Array, Array]:

@@ -9,6 +9,7 @@ converge with the fourth power of the element size. scikit-fem: T. Gustafsson, G
 Software 5 (2020) 2369.
 """
 
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,11 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse import linalg as spla
 
-from ...core.blade import Blade
+from ...core.blade import Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..protocol.cache_last import cache_last
-from ..protocol.fingerprint import Fingerprint, of_matrix, rigid_motions
+from ..protocol.fingerprint import Fingerprint, of_matrix, rigid_motions, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence, extra
 from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, line, moments, steps
@@ -103,7 +104,14 @@ class ScikitFemReissner(BladeAdapter):
         position = line(blade, s[:, None]).position[:, 0]
         motions = np.concatenate([rigid_motions(position), np.broadcast_to(np.eye(6)[3:], (len(s), 3, 6))], axis=1)
         q = motions[np.arange(len(s)), own]
-        return of_matrix(q.T @ (M @ q), beam.elements)
+        weighed = of_matrix(q.T @ (M @ q), beam.elements)
+        if not clamped(blade):
+            return weighed
+        Z = _motions(beam, at_rest(beam))
+        full = Z @ np.eye(Z.shape[1])
+        tip = full[np.array(beam.basis.get_dofs("tip").flatten())]
+        K = _elastic(beam, _soft(beam)) + full.T @ (stiffening(beam, at_rest(beam), 0.0) @ full)
+        return replace(weighed, flexibility=tip_flexibility(tip @ np.linalg.solve(K, tip.T)))
 
 
 @cache_last

@@ -18,7 +18,7 @@ def contradictions(run: Run) -> list[str]:
         )
     models = _codes(c for c in run.property_checks if c.quantity == "fingerprint" and c.verdict == "fail")
     if models:
-        out.append(f"the model of {', '.join(models)} does not weigh what the stations weigh")
+        out.append(f"the model of {', '.join(models)} differs from the stations of the blade")
     return out
 
 
@@ -55,25 +55,30 @@ def readings(run: Run, case: str) -> list[dict[str, str]]:
 
 
 def models(run: Run, case: str) -> list[dict[str, str]]:
-    """One row for each code's model: the differences of mass, first moments and inertia."""
+    """One row for each code's model: the differences of mass, first moments, inertia and tip flexibility."""
     out = []
     mine = [c for c in run.property_checks if c.case == case and c.quantity == "fingerprint"]
     for code in _codes(mine):
         checks = [c for c in mine if c.code == code]
         by = {c.part: c for c in checks}
-        moments = [c for c in checks if c.part.startswith("first moment")]
+        moments, bends = ([c for c in checks if c.part.startswith(what)] for what in ("first moment", "tip flex"))
         verdict = "fail" if any(c.verdict == "fail" for c in checks) else checks[0].verdict
         reason = next((c.reason for c in checks if c.verdict == verdict and c.reason), verdict)
         out.append(
             {
                 "model of": code,
                 "mass": _size(by.get("mass")),
-                "first moments": _size(max(moments, key=lambda c: abs(c.difference or 0.0), default=None)),
+                "first moments": _size(_largest(moments)),
                 "inertia": _size(by.get("inertia about the rotor's axis")),
+                "tip flexibility": _size(_largest(bends)),
                 "verdict": f"{SYMBOL[verdict]} {reason}",
             }
         )
     return out
+
+
+def _largest(checks: Iterable[PropertyCheck]) -> PropertyCheck | None:
+    return max(checks, key=lambda c: abs(c.difference or 0.0), default=None)
 
 
 def _codes(checks: Iterable[PropertyCheck]) -> list[str]:

@@ -13,8 +13,14 @@ from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, PropertyCheck, Run
 from southwell.cases.plan.request import Execution, Request
 from southwell.cases.plan.subjects import subjects
+from southwell.cases.solve import properties as tasks
 from southwell.cases.verify.pipeline import verify
+from southwell.core import blade as core_blade
+from southwell.core.blade import Blade
+from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
+from southwell.references.protocol.fingerprint import Fingerprint
+from southwell.references.protocol.interface import BladeAdapter
 from southwell.references.protocol.process import Limits
 from southwell.references.readers import openfast, stations
 from southwell.reports.shared import summary
@@ -45,6 +51,12 @@ def checked(deck: Path, codes: Sequence[str] = (), **options: Any) -> Run:
 def deck(tmp_path: Path) -> Path:
     decks.openfast(tmp_path)
     return tmp_path / "elastodyn_main.dat"
+
+
+def in_this_process(name: str, blade: Blade, elements: Sequence[int], *_: object) -> list[Fingerprint | None]:
+    code = registry.code(registry.locate(name))
+    assert isinstance(code, BladeAdapter)
+    return [code.fingerprint(blade, n) for n in elements]
 
 
 def exchange(patch: pytest.MonkeyPatch) -> None:
@@ -115,13 +127,28 @@ def test_a_csv_is_read_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
     wrong = [c for c in found.property_checks if c.verdict == "fail"]
     assert {c.part for c in wrong if c.quantity == "reading"} == {"first moments of mass"}
-    assert {c.code for c in wrong if c.quantity == "fingerprint"} == {"core", "scikit-fem-reissner"}
-    assert "the model of core, scikit-fem-reissner does not weigh what the stations weigh" in evidence.verdict(found)
+    assert not [c for c in wrong if c.quantity == "fingerprint"], "the models are those of the blade as read"
+
+
+def test_a_wrong_sampling_is_named_for_every_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    interpolate = core_blade._interpolate
+
+    def heavier(at: Any, values: Any, s: Any) -> Any:
+        return interpolate(at, values, s) * (1.01 if (values[:, 0, 0] == values[:, 1, 1]).all() else 1.0)
+
+    monkeypatch.setattr(core_blade, "_interpolate", heavier)
+    monkeypatch.setattr(tasks, "fingerprints", in_this_process)
+    found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
+    assert (
+        evidence.verdict(found) == "No: the model of core, scikit-fem-reissner differs from the stations of the blade."
+    )
+    first = properties.lines(found)[0]
+    assert first.startswith(
+        "Model of core: mass: 1212 kg in the code's model, 1200 kg by quadrature of the stations: +1 %"
+    )
 
 
 def test_a_code_that_reports_nothing_says_so(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from southwell.cases.solve import properties as tasks
-
     monkeypatch.setattr(tasks, "fingerprints", lambda *_: [None])
     found = checked(deck, ["exudyn-tree"])
     rows = [c for c in found.property_checks if c.code == "exudyn-tree"]

@@ -113,6 +113,7 @@ def test_every_model_weighs_what_its_stations_weigh(name: str) -> None:
 @pytest.mark.parametrize("blade", BLADES.values(), ids=BLADES)
 def test_core_weighs_what_its_stations_weigh(blade: Blade) -> None:
     found = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
+    assert len(found) == 8
     assert max(abs(w.difference) for w in found) < 1e-8
 
 
@@ -151,6 +152,31 @@ def test_one_per_cent_of_mass_in_the_shared_sampling_is_found_by_name(
     assert line.endswith(" kg by quadrature of the stations: +1 %")
     core = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
     assert not core[0].agrees
+
+
+def softer(old: Callable[..., Any]) -> Callable[..., Any]:
+    """An interpolation that makes the flapwise stiffness 1 % too small, and leaves the mass."""
+
+    def interpolate(stations: Any, values: Any, s: Any) -> Any:
+        out = old(stations, values, s)
+        if not np.allclose(values[:, 1, 1], values[:, 0, 0]):
+            out[:, 4, 4] *= 0.99
+        return out
+
+    return interpolate
+
+
+@pytest.mark.parametrize("name", ["core", "exudyn-tree", "scikit-fem-reissner"])
+def test_one_per_cent_of_stiffness_in_the_shared_sampling_is_found_by_name(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
+    blade = tapered(pitch=0.0, twist=np.zeros(4))
+    monkeypatch.setattr(core_blade, "_interpolate", softer(core_blade._interpolate))
+    assembled = [wt.of_core(blade)] if name == "core" else models(code(name), blade)
+    found = wt.weights(blade, wt.stations_of(blade), assembled)
+    wrong = {w.name: w.difference for w in found if not w.agrees}
+    assert set(wrong) == {"tip flexibility along z"}
+    assert wrong["tip flexibility along z"] == pytest.approx(1 / 0.99 - 1, rel=1e-2)
 
 
 def test_a_code_without_rotary_inertia_is_compared_without_it() -> None:
