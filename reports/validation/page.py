@@ -52,8 +52,8 @@ def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("sou
 def pages(model: Simulated, points: Sequence[Point], beams: Mapping[str, Sequence[Point]]) -> dict[str, str]:
     """The page and its figures by file name; ``beams`` has the points of each kind of rotating beam."""
     parts = [_HEAD, _SANDIA, f"![Campbell diagram]({FIGURE})", table(summary(points)), _MODEL, every(points)]
-    parts += beams.parts(beams)
-    figures = {FIGURE: svg(figure(model, points)), beams.FIGURE: svg(beams.figure(beams))}
+    parts += beam_section.parts(beams)
+    figures = {FIGURE: svg(figure(model, points)), beam_section.FIGURE: svg(beam_section.figure(beams))}
     return {PAGE: "\n\n".join(parts) + "\n", **figures}
 
 
