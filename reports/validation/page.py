@@ -17,6 +17,7 @@ from ...cases.validation.points import Point
 from ..shared.console import output
 from ..shared.markdown import plain, table
 from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house, svg
+from . import beam_section
 from .tables import by_line, every
 
 PAGE, FIGURE = "validation.md", "validation.svg"
