@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Annotated, Any, Literal, get_args
 
 import numpy as np
-from msgspec import UNSET, Meta, Struct, UnsetType
+from msgspec import UNSET, Meta, Struct, UnsetType, structs
 from numpy.typing import NDArray
 
 from ...core.blade import Blade, BladeError
@@ -53,7 +53,9 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
         Meta(min_length=1, description="a mode qualifies if at least half its kinetic energy is in these motions"),
     ] = get_args(Motion)
     target: Annotated[float, Meta(gt=0, le=LOOSEST, description="largest difference, relative")] = 1e-3
-    tables: Annotated[tuple[str, ...], Meta(description="published tables to compare with, by name")] = ()
+    tables: Annotated[
+        tuple[str, ...], Meta(description="published tables to compare with, by name, or by path (.toml)")
+    ] = ()
     time_limit: Annotated[
         float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
     ] = 300.0
@@ -158,6 +160,25 @@ def read(path: Path) -> Case:
         return decode(document(path, OR_A_NAME), str(path), path.parent)
 
 
+def _tables(text: CaseFile, path: str, folder: Path) -> tuple[str, ...]:
+    """The tables of a case; a path is made absolute, and its table is read."""
+    out = []
+    for table in text.compare.tables:
+        if table.endswith(".toml"):
+            file = folder / table
+            files.text(file, absent="paths in a case are relative to its file; correct the name")
+            try:
+                published.load(str(file.resolve()))
+            except published.TableError as error:
+                raise CaseError(f"{path}: compare.tables: {error}") from error
+            out.append(str(file.resolve()))
+        elif table in published.names():
+            out.append(table)
+        else:
+            raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
+    return tuple(out)
+
+
 def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     """Build the case from a decoded TOML document; ``folder`` contains the tables it references.
 
@@ -166,9 +187,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     """
     finite(data, path)
     text = convert(data, CaseFile, path)
-    for table in text.compare.tables:
-        if table not in published.names():
-            raise CaseError(f"{path}: compare.tables: {table!r}: no such table: {nearest(table, published.names())}")
+    text = structs.replace(text, compare=structs.replace(text.compare, tables=_tables(text, path, folder)))
     _confirmed(text, path)
     speeds = rad_s(text.speeds, path, isinstance(text.blade, Dimensionless))
     variants = []

@@ -3,7 +3,7 @@
 from collections.abc import Iterable, Sequence
 
 from ...references.protocol.description import Description
-from ...references.published import load
+from ...references.published import label, load
 from ..input.errors import CaseError
 from .blade_columns import PAPER
 from .subject import Subject
@@ -26,7 +26,9 @@ def unique(subjects: Sequence[Subject], codes: Sequence[Description], user_resul
     tables = [name for subject in subjects for name in subject.tables]
     columns = [(name, "this package") for name in OURS]
     for table in dict.fromkeys(tables):
-        columns += [(f"{table}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)]
+        columns += [
+            (f"{label(table)}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)
+        ]
     columns += [(code.name, f"--codes {code.asked}") for code in codes]
     columns += [(one.name, f"--add {one.path}") for one in user_results]
     _once("code", columns, "leave one out, or give it another name")

@@ -8,7 +8,7 @@ import numpy as np
 from ...core.blade import Blade, sample, uniform
 from ...core.effects import Effects
 from ...references.protocol.worker import Run
-from ...references.published import Datum, Series, load
+from ...references.published import Datum, Series, label, load
 from ..input.schema import Discretisation
 from ..judge.cells import Head
 from ..judge.convergence import follow
@@ -55,7 +55,7 @@ def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
         TableError: if a table does not exist.
     """
     return [
-        Printed(f"{name}/{series.name}", name, series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
+        Printed(f"{label(name)}/{series.name}", label(name), series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
         for name in names
         for table in [load(name)]
         for series in table.series

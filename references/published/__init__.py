@@ -8,12 +8,14 @@ computation contradicts by more than its rounding stays in the table, marked ``s
 import tomllib
 from difflib import get_close_matches
 from importlib.resources import files
+from pathlib import Path
 from typing import Annotated, Literal
 
 import msgspec
 from msgspec import Meta, Struct
 
 from ...core.effects import Effects
+from ...core.regular_files import read_bytes
 
 COARSEST = 0.02
 """Largest relative target allowed for a table: twenty times the paper's 0.1 %."""
@@ -112,12 +114,22 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(f.name.removesuffix(".toml") for f in files(__name__).iterdir() if f.name.endswith(".toml")))
 
 
+def label(name: str) -> str:
+    """Name of a table in columns: that of its file without folder and ending, if it is given by path."""
+    return Path(name).stem if name.endswith(".toml") else name
+
+
 def load(name: str) -> Table:
-    """The table called ``name`` (see ``names()``).
+    """The table called ``name`` (see ``names()``), or in the file ``name``, if it ends with ``.toml``.
 
     Raises:
-        TableError: if there is none.
+        TableError: if there is none, or the file cannot be read or is invalid.
     """
+    if name.endswith(".toml"):
+        try:
+            return parse(read_bytes(Path(name)).decode("utf-8"), name)
+        except (OSError, UnicodeDecodeError) as error:
+            raise TableError(f"{name}: {error}: give the path of a table, relative to the case file") from error
     if name not in names():
         near = get_close_matches(name, names(), 1)
         advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(names())}"

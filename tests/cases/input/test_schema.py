@@ -11,6 +11,7 @@ from southwell.cases.input.readers import Mount, southwell_toml
 from southwell.cases.input.schema import read, speed_range
 from southwell.core.blade import sample
 from southwell.core.solve import modes
+from southwell.references import published
 
 GOOD = """
 name = "mine"
@@ -264,3 +265,24 @@ def test_a_beam_without_shear_modulus_and_torsion_constant_is_rigid_in_torsion(t
     read = southwell_toml.read(path)
     assert np.isinf(read.blade.stiffness[:, 3, 3]).all()
     assert "torsional stiffness not given: treated as rigid" in read.source.notes
+
+
+def test_a_published_table_is_given_by_its_path(write, tmp_path: Path) -> None:
+    """The rotating cantilever of Wright et al. (1982, Table 3a), hub ratio 0 and speed 6: 7.3604."""
+    (tmp_path / "wright.toml").write_text(
+        'citation = "Wright et al. (1982), Table 3a"\nbeam = "b"\nunit = "dimensionless"\nscale = "s"\n'
+        '[[series]]\nname = "exact"\ntitle = "t"\nprovenance = "p"\ndescription = "d"\nlacks = []\n'
+        'data = [{ family = "flapwise", mode = 1, speed = 6, printed = "7.3604" }]\n'
+    )
+    head = 'name = "own"\ntitle = "t"\ndescription = "d"\nsource = "s"\n'
+    text = head + '[blade]\nkind = "dimensionless"\nslenderness = 1e4\n[speeds]\ngamma = [0, 6]\n'
+    compare = '[compare]\nmodes = 1\ntables = ["wright.toml"]\ngroups = 1\n'
+    (table,) = read(write(text + compare)).text.compare.tables
+    assert table == str(tmp_path / "wright.toml")
+    assert published.label(table) == "wright"
+    assert published.load(table).series[0].data[0].printed == "7.3604"
+    with pytest.raises(CaseError, match=r"other\.toml: no such file"):
+        read(write(text + compare.replace("wright", "other")))
+    (tmp_path / "wright.toml").write_text("citation = 1\n")
+    with pytest.raises(CaseError, match=r"compare\.tables: .*wright\.toml"):
+        read(write(text + compare))
