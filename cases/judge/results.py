@@ -126,6 +126,7 @@ class Control:
         detected_by: cells (or lines of the gate) that are bad with the fault and not without it; empty if not detected.
         change: largest difference among those cells, relative.
         needs: required codes that are not installed; if any, the trial was not run.
+        without_effect: why the fault cannot be detected on this blade; empty if it can.
     """
 
     control: str
@@ -137,11 +138,12 @@ class Control:
     detected_by: tuple[str, ...]
     change: float | None = None
     needs: str = ""
+    without_effect: str = ""
 
     @property
     def missed(self) -> bool:
-        """Whether the control was run and not detected."""
-        return not self.detected_by and not self.needs
+        """Whether the control was run, has an effect, and is not detected."""
+        return not (self.detected_by or self.needs or self.without_effect)
 
 
 @dataclass(frozen=True)

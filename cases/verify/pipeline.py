@@ -13,11 +13,12 @@ from pathlib import Path
 from ...references.protocol import launch, registry, store
 from ...references.protocol.description import Description, describe
 from ...references.protocol.store import Store
-from ..faults import table
+from ..faults import own, table
 from ..input.writing import writable
 from ..judge import results
 from ..judge.results import RESULTS, Control, Planned, Run, Setting
 from ..plan import measurements, names, user_results
+from ..plan.blade import BladeSubject
 from ..plan.request import Execution, Request, command_line
 from ..plan.settings import NOT_USED
 from ..plan.subject import Subject, asked_about, speeds_of_blades
@@ -176,7 +177,10 @@ def _solved(
     state = tuple(f"{name} {version}" for name, version in sorted(plan.about.versions.items()))
     serial = request.execution.threads
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
-    shares = _shares(plan.faults, request.execution.workers or SHARES)
+    users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
+    on_blades = tuple(name for name in plan.faults if users_blades and name in own.NAMES)
+    elsewhere = tuple(name for name in plan.faults if name not in on_blades)
+    shares = _shares(elsewhere, request.execution.workers or SHARES)
     tried: list[Future[list[Control]]] = []
 
     def try_faults() -> None:
@@ -202,9 +206,14 @@ def _solved(
         )
         if serial:  # a fault alters modules, which no other thread may use at that time
             try_faults()
+        on_own = [
+            trials.submit(own.run, subject, own.witnesses(run.cells, subject), on_blades, users is not None)
+            for subject in (users_blades if on_blades else [])
+        ]
+        on_own += [trials.submit(own.reading, subject) for subject in (users_blades if on_blades else [])]
         controls = {control.control: control for future in tried for control in future.result()}
     about = plan.about
-    ordered = tuple(controls[name] for name in plan.faults)
+    ordered = (*(c for future in on_own for c in future.result()), *(controls[name] for name in elsewhere))
     if times := [*tasks.taken, *trials.taken]:
         observer.note(_taken(times, tasks.asked + trials.asked))
     return replace(run, controls=ordered, versions=about.versions, command=about.command, settings=about.settings)

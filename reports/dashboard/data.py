@@ -83,10 +83,14 @@ def headline(run: Run) -> list[str]:
     return [line for line in lines if line]
 
 
+def _seen(control: Control) -> str:
+    return "without effect" if control.without_effect else "detected"
+
+
 def _control(control: Control) -> dict[str, Any]:
     return {
         "name": control.control,
-        "status": "missed" if control.missed else "needs a code" if control.needs else "detected",
+        "status": "missed" if control.missed else "needs a code" if control.needs else _seen(control),
         "change": control.change,
         "where": control.what,
         "detected_by": list(control.detected_by),

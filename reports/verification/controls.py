@@ -16,14 +16,19 @@ def headline(run: Run) -> str:
     if missed:
         return f"**Negative controls not detected: {missed}.**"
     left = len(run.controls) - len(tried)
+    silent = sum(bool(c.without_effect) for c in tried)
     rest = f"; {left} were not run, because a code is missing" if left else ""
-    return f"Negative controls: {len(tried)} of {len(tried)} seeded faults, run through the whole pipeline, are detected{rest}."
+    count = len(tried) - silent
+    rest += f"; {silent} have no effect on this blade" if silent else ""
+    return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{rest}."
 
 
 def said(control: Control) -> str:
-    """The outcome of a control: ``✔ detected``, ``✘ missed`` or ``○ needs exudyn-tree``."""
+    """The outcome of a control: ``✔ detected``, ``✘ missed``, ``– without effect here`` or ``○ needs exudyn-tree``."""
     if control.needs:
         return f"○ needs {control.needs}"
+    if control.without_effect:
+        return "– without effect here"
     return "✘ missed" if control.missed else "✔ detected"
 
 
@@ -37,7 +42,7 @@ def overview(run: Run) -> list[dict[str, str]]:
             "size": control.size,
             "outcome": said(control),
             "largest difference": percent(control.change) if control.change is not None else "",
-            "detected by": _named(control.detected_by),
+            "detected by": _named(control.detected_by) or control.without_effect,
         }
         for control in run.controls
     ]

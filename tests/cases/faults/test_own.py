@@ -1,0 +1,106 @@
+"""Faults on the blade that is verified: detected by a fail of an independent code, or by the second reading of its file."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.faults import own
+from southwell.cases.input import library
+from southwell.cases.judge.results import Cell, Control, Verdict
+from southwell.cases.plan.blade import BladeSubject, blades
+from southwell.cases.plan.request import Request
+from southwell.cases.plan.subjects import subjects
+from southwell.core.blade import uniform_blade
+
+from ...support import decks
+
+BLADE = uniform_blade("beam", 6.0, 0.6, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=1.2)
+CONTROL = Control("no hub radius", "core", "the root is on the axis", "", "beam", 10.0, ())
+
+
+def users(blade_hub: float = 0.6) -> BladeSubject:
+    """A blade that does not come with the package, at one speed."""
+    (subject,) = blades(library.load("park-cantilever"))
+    blade = replace(BLADE, hub_radius=blade_hub)
+    case = replace(subject.case, path="mine.toml")
+    return BladeSubject(case, replace(subject.variant, name="beam", blade=blade, speeds=np.array([0.0, 10.0])))
+
+
+def cell(verdict: Verdict, reference: float = 5.0, difference: float = 0.0) -> Cell:
+    return Cell(
+        *("beam", 10.0, 1, "flapwise", "code", "1", "code", 5.0, reference, difference, 1e-9, 1e-3, verdict),
+        shares="nothing",
+        ordinal=1,
+    )
+
+
+def test_only_a_fail_detects() -> None:
+    right = [cell("pass")]
+    found = own.judged(CONTROL, right, [cell("fail", 5.2, -0.04)])
+    assert found.detected_by == ("beam, code, flapwise 1, 10 rad/s: fail",)
+    assert found.change == -0.04
+    assert own.judged(CONTROL, right, [cell("inconclusive", 5.2, -0.04)]).missed
+    assert own.judged(CONTROL, [cell("fail")], [cell("fail", 5.2)]).missed
+
+
+def test_a_fault_below_the_target_is_without_effect_here() -> None:
+    found = own.judged(CONTROL, [cell("pass")], [cell("pass", 5.0001)])
+    assert found.without_effect == "changes no compared frequency by more than 0.0020 %"
+    assert not found.missed
+
+
+def test_witnesses_share_nothing_and_pass_every_mode_at_the_highest_speed() -> None:
+    subject = users()
+    good = cell("pass")
+    others = [replace(good, code="two", mode=2, verdict="fail"), replace(good, code="two")]
+    derived = replace(good, code="three", shares="mechanical model")
+    slow = replace(good, code="four", omega=0.0)
+    assert own.witnesses([good, *others, derived, slow], subject) == ("code",)
+
+
+def test_a_blade_of_the_package_is_not_the_users() -> None:
+    assert own.is_users(users())
+    assert not own.is_users(blades(library.load("park-cantilever"))[0])
+
+
+def test_without_an_independent_code_nothing_is_claimed() -> None:
+    (found,) = own.run(users(), (), ("no hub radius",))
+    assert found.needs == own.NO_WITNESS
+    assert not found.missed
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(("hub", "detected"), [(0.6, True), (0.0, False)])
+def test_faults_of_core_act_on_the_users_blade(hub: float, detected: bool) -> None:
+    softening, radius = own.run(users(hub), ("exact-beam",), ("softening's sign", "no hub radius"))
+    assert "exact-beam" in softening.detected_by[0]
+    assert bool(radius.detected_by) == detected
+    assert bool(radius.without_effect) != detected
+
+
+def outcomes(controls: Sequence[Control]) -> dict[str, str]:
+    return {
+        c.control.removeprefix("reader: "): "missed" if c.missed else c.without_effect or c.detected_by[0]
+        for c in controls
+    }
+
+
+@pytest.mark.slow
+def test_the_second_reading_detects_mistakes_of_the_reader(tmp_path: Path) -> None:
+    pytest.importorskip("weio")
+    decks.openfast(tmp_path)
+    (subject,) = subjects(Request((str(tmp_path / "elastodyn_main.dat"),), rpm="10"), lambda _: None)
+    assert isinstance(subject, BladeSubject)
+    found = outcomes(own.reading(subject))
+    assert "missed" not in found.values()
+    assert "flapwise stiffness" in found["columns exchanged"]
+    assert "mass per length" in found["mass multiplier"]
+    assert "twist" in found["station"]
+    assert found["prebend's sign"] == "changes no property of this blade"
+
+
+def test_a_blade_without_a_file_has_no_reading() -> None:
+    assert own.reading(users()) == []
