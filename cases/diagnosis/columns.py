@@ -27,7 +27,8 @@ def _frequencies(cells: Sequence[Cell]) -> list[Cell]:
 def diagnosed(blade: Blade, cells: Sequence[Cell]) -> Diagnosed:
     """The diagnosis of one column of one blade, from its cells; the modes were paired by shape, or by the file's names."""
     answered = _frequencies(cells)
-    speeds, names = (sorted({get(cell) for cell in answered}) for get in (_omega, _name))
+    speeds = sorted({cell.omega for cell in answered})
+    names = sorted({cell.name for cell in answered})
     given = np.full((len(speeds), len(names)), np.nan)
     for cell in answered:
         given[speeds.index(cell.omega), names.index(cell.name)] = cell.value
@@ -42,11 +43,3 @@ def diagnosed(blade: Blade, cells: Sequence[Cell]) -> Diagnosed:
         causes=cause_lines(found),
         modes=mode_lines(found),
     )
-
-
-def _omega(cell: Cell) -> float:
-    return cell.omega
-
-
-def _name(cell: Cell) -> str:
-    return cell.name

@@ -89,7 +89,7 @@ class Diagnosis:
 
 def diagnose(
     blade: Blade,
-    speeds: Sequence[float],
+    speeds: ArrayLike,
     frequencies: ArrayLike,
     modes: Sequence[Label] | None = None,
     *,
