@@ -1,7 +1,7 @@
 """Periodic systems ``M(ψ) ẍ + C(ψ) ẋ + K(ψ) x = 0``, ψ = Ω t, as Fourier series of their matrices."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
@@ -165,13 +165,6 @@ def averaged_exactly(system: Periodic) -> Periodic:
             "axis, or blades are missing from the multi-blade coordinates; use Floquet's or Hill's method"
         )
     return constant(*system.mean, system.omega, system.names)
-
-
-def reduced(system: Periodic, basis: Array, names: tuple[str, ...] | None = None) -> Periodic:
-    """The system on motions ``basis`` (n, r), by Galerkin's method."""
-    M, C, K = (basis.T @ part @ basis for part in (system.M, system.C, system.K))
-    named = names or tuple(f"motion {k + 1}" for k in range(basis.shape[1]))
-    return replace(system, names=named, M=M, C=C, K=K)
 
 
 def _sizes(M: Array, C: Array, K: Array, omega: float) -> Array:
