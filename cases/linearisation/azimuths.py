@@ -150,7 +150,7 @@ def _aperiodic(each: AzimuthSet, order: tuple[int, ...]) -> float:
     """Deviation of the deflections of blades in this order from one function of their azimuth, relative to their size."""
     if each.blades != 3 or len(each.files) < 2:
         return 0.0
-    psi = (each.azimuths[:, None] + 2 * np.pi / 3 * np.arange(3)).ravel()
+    psi = each.blade_azimuths
     worst = 0.0
     for group in each.groups:
         if group.rate or each.states[group.members[0]].module != "ED":

@@ -42,7 +42,7 @@ def differences(each: AzimuthSet) -> tuple[Difference, ...]:
     if each.blades != 3 or len(each.files) < 2:
         return ()
     groups = [g for g in each.groups if not g.rate and g.derivative and each.states[g.members[0]].module in STRUCTURAL]
-    psi = (each.azimuths[:, None] + 2 * np.pi / 3 * np.arange(3)).ravel()
+    psi = each.blade_azimuths
     diagonal = [
         np.mean([np.abs(each.A[:, v, q]).mean() for v, q in zip(g.derivative or (), g.members, strict=True)])
         for g in groups

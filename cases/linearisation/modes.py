@@ -3,6 +3,7 @@
 from collections import Counter, defaultdict
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -92,7 +93,7 @@ class Spectrum:
 def spectrum(each: AzimuthSet, A: Array) -> Spectrum:
     """The modes of state matrices ``A``, which may differ from those of the files by a correction."""
     matrices = fixed_frame(each, A)
-    values, left, right = eig(matrices.mean(axis=0), left=True, right=True)
+    values, left, right = cast("tuple[Complex, Complex, Complex]", eig(matrices.mean(axis=0), left=True, right=True))
     norms = np.einsum("ij,ij->j", left.conj(), right)
     size = float(np.abs(values).max(initial=0.0))
     oscillates = values.imag > max(MIN_OSCILLATION, 1e-12 * size)

@@ -69,6 +69,11 @@ class AzimuthSet:
         return np.array([file.azimuth for file in self.files])
 
     @cached_property
+    def blade_azimuths(self) -> Array:
+        """Azimuths of blades 1, 2, 3 of the first file, then of the next, rad."""
+        return np.asarray((self.azimuths[:, None] + 2 * np.pi / 3 * np.arange(3)).ravel(), dtype=np.float64)
+
+    @cached_property
     def omega(self) -> float:
         """Mean rotor speed, rad/s."""
         return float(np.mean([file.rotor_speed for file in self.files]))

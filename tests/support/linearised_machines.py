@@ -134,7 +134,7 @@ def _pair(matrix: Array, i: int, j: int, value: float) -> None:
 
 def _tension(mass: float, r: Array, dr: float) -> Array:
     """∫ from r to the tip of m r dr."""
-    return mass * np.cumsum((r * dr)[::-1])[::-1]
+    return np.asarray(mass * np.cumsum((r * dr)[::-1])[::-1], dtype=np.float64)
 
 
 def state_matrix(M: Array, D: Array, K: Array) -> Array:

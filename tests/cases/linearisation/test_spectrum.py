@@ -32,7 +32,7 @@ def floquet_exponents(machine: Machine) -> Complex:
     coefficients = np.fft.fft([machine.A(2 * np.pi * k / samples) for k in range(samples)], axis=0) / samples
     orders = np.fft.fftfreq(samples, 1 / samples)
     psi = 2 * np.pi * np.arange(2 * steps + 1) / (2 * steps)
-    A = np.tensordot(np.exp(1j * np.outer(psi, orders)), coefficients, 1).real
+    A = np.real(np.tensordot(np.exp(1j * np.outer(psi, orders)), coefficients, 1))
     h = 2 * np.pi / machine.omega / steps
     Phi = np.eye(28)
     for k in range(steps):
@@ -41,7 +41,7 @@ def floquet_exponents(machine: Machine) -> Complex:
         k2 = b @ (Phi + h / 2 * k1)
         k3 = b @ (Phi + h / 2 * k2)
         Phi = Phi + h / 6 * (k1 + 2 * k2 + 2 * k3 + c @ (Phi + h * k3))
-    return np.log(np.linalg.eigvals(Phi) + 0j) / (h * steps)
+    return np.log(np.linalg.eigvals(Phi).astype(complex)) / (h * steps)
 
 
 def distance(value: complex, exponents: Complex, omega: float) -> float:
