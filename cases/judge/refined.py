@@ -32,17 +32,17 @@ def refined(
         or (_unrefined(refinements.answers) if order and not bracket else "")
     )
     cells = []
-    for i, mine in enumerate(refined_modes):
-        cell = row(head, omega, i, reference, refinements.answers[-1], mine.partner)
+    for i, mode in enumerate(refined_modes):
+        cell = row(head, omega, i, reference, refinements.answers[-1], mode.partner)
         if still := _still(reference, i, head.motions):
             cell = replace(cell, verdict="not applicable", reason=still)
-        elif mine.estimate:
-            cell = judged(cell, reference, i, mine, late, order)
+        elif mode.estimate:
+            cell = judged(cell, reference, i, mode, late, order)
         if doubt and cell.verdict in (*AGREES, "known difference"):
             cell = replace(cell, verdict="inconclusive", reason=join(doubt, cell.reason))
         cells.append(cell)
     levels = [
-        Level(head.case, omega, i + 1, head.code, n, f) for i, mine in enumerate(refined_modes) for n, f in mine.history
+        Level(head.case, omega, i + 1, head.code, n, f) for i, mode in enumerate(refined_modes) for n, f in mode.history
     ]
     return cells, levels
 
@@ -91,20 +91,20 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
     return "" if motion in motions else f"this code declares that its modes have no {motion} motion"
 
 
-def judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: str, declared_order: float = 0.0) -> Cell:
+def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, late: str, declared_order: float = 0.0) -> Cell:
     """The cell with numbers and verdict; a pass states an order of convergence below the declared one."""
-    base, best = reference.core.modes[i].estimate, mine.estimate
+    base, best = reference.core.modes[i].estimate, mode.estimate
     if base is None or best is None:
         return cell
     difference = best.value / base.value - 1.0
     unsure = best.uncertainty is None or base.uncertainty is None
     uncertainty = None if unsure else (best.uncertainty or 0.0) + (base.uncertainty or 0.0)
-    if mine.bracketed:
+    if mode.bracketed:
         verdict, reason = bracketed(difference, uncertainty, cell.target)
     else:
         verdict, reason = judge(difference, uncertainty, cell.target)
     if verdict in AGREES:
-        verdict, reason = unless_ambiguous(known_effects(reference, i, cell.target), mine.partner)
+        verdict, reason = unless_ambiguous(known_effects(reference, i, cell.target), mode.partner)
         reason = join(reason, best.note if best.order is not None and best.order < declared_order else "", late)
     else:
         reason = join(reason, best.note, base.note and f"core: {base.note}", late)
@@ -115,6 +115,6 @@ def judged(cell: Cell, reference: Reference, i: int, mine: RefinedMode, late: st
         difference=difference,
         uncertainty=uncertainty,
         verdict=verdict,
-        reason=join(reason, mine.partner.note),
+        reason=join(reason, mode.partner.note),
         order=best.order,
     )

@@ -95,11 +95,11 @@ def as_given(source: Discretisation) -> Refining:
 def converged(blade: Blade, speeds: Sequence[float], compare: Compare, effects: Effects) -> list[Converged | Failure]:
     """Core's converged modes at each speed (rad/s), with the given effects; a failure where too few modes qualify."""
     count, weight = 2 * compare.modes + MARGIN, weights(blade)
-    found = _converged(blade, speeds, compare, effects, weight, count)
-    if few := [omega for omega, one in found.items() if isinstance(one, int)]:
+    by_speed = _converged(blade, speeds, compare, effects, weight, count)
+    if few := [omega for omega, answer in by_speed.items() if isinstance(answer, int)]:
         count *= DEEPER
-        found |= _converged(blade, few, compare, effects, weight, count)
-    return [_enough(omega, found[omega], compare.modes, count) for omega in speeds]
+        by_speed |= _converged(blade, few, compare, effects, weight, count)
+    return [_enough(omega, by_speed[omega], compare.modes, count) for omega in speeds]
 
 
 def _enough(omega: float, answer: Converged | Failure | int, compared: int, count: int) -> Converged | Failure:
@@ -135,32 +135,32 @@ def _converged(
     refined = solve(ask, speeds, plan, count, lambda omega, solved: compared(omega, solved)[0])
     out: dict[float, Converged | Failure | int] = {}
     enough: dict[float, tuple[Spectrum, ...]] = {}
-    for omega, one in zip(speeds, refined, strict=True):
-        if not one.answers:
-            out[omega] = one.failure or Failure("refused", "no answer")
-        elif (qualified := len(compared(omega, one.answers)[0].indices)) < compare.modes:
+    for omega, refinements in zip(speeds, refined, strict=True):
+        if not refinements.answers:
+            out[omega] = refinements.failure or Failure("refused", "no answer")
+        elif (qualified := len(compared(omega, refinements.answers)[0].indices)) < compare.modes:
             out[omega] = qualified
         else:
-            enough[omega] = one.answers
+            enough[omega] = refinements.answers
     meshes = [(omega, (solved[-2:][0].elements, solved[-1].elements)) for omega, solved in enough.items()]
     biases = rigid_strain_bias(blade, meshes, count, effects)
     for (omega, solved), (factor, unsure) in zip(enough.items(), biases, strict=True):
         target, energies = compared(omega, solved)
         modes = tuple(
-            _corrected(one, float(factor[k]), float(unsure[k]))
-            for k, one in zip(target.indices, follow(solved, target, plan.order), strict=True)
+            _corrected(mode, float(factor[k]), float(unsure[k]))
+            for k, mode in zip(target.indices, follow(solved, target, plan.order), strict=True)
         )
         motions = tuple(FAMILIES[k] for k in energies[list(target.indices)].argmax(1))
         out[omega] = Converged(target, modes, motions)
     return out
 
 
-def _corrected(one: RefinedMode, factor: float, unsure: float) -> RefinedMode:
+def _corrected(mode: RefinedMode, factor: float, unsure: float) -> RefinedMode:
     """Remove the bias of rigid strains."""
-    if one.estimate is None:
-        return one
-    known = widened(one.estimate, unsure)
-    return replace(one, estimate=replace(known, value=factor * known.value))
+    if mode.estimate is None:
+        return mode
+    estimate = widened(mode.estimate, unsure)
+    return replace(mode, estimate=replace(estimate, value=factor * estimate.value))
 
 
 def qualifying(energies: Array, compare: Compare) -> tuple[int, ...]:

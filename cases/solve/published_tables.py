@@ -42,10 +42,10 @@ class Printed:
 
     def at(self, omega: float, names: Sequence[str]) -> list[Datum | None]:
         """The number for each mode, given by names such as ``flapwise 2``, at rotor speed ``omega``."""
-        here = {
+        at_speed = {
             f"{d.family} {d.mode}": d for d in self.series.data if np.isclose(d.speed * self.speed, omega, rtol=1e-9)
         }
-        return [here.get(name) for name in names]
+        return [at_speed.get(name) for name in names]
 
 
 def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
@@ -122,9 +122,9 @@ def discretised(
     plan = as_given(source)
     (refinements,) = solve(ask, [omega], plan, reference.core.count, lambda *_: compared)
     fine = follow(refinements.answers, compared, plan.order)
-    found: list[Coarse | None] = []
+    out: list[Coarse | None] = []
     for mode in fine:
         levels = dict(mode.history)
-        there = mode.estimate is not None and n in levels
-        found.append(Coarse(levels[n], mode.estimate.value) if there and mode.estimate else None)
-    return found or [None] * len(compared.indices)
+        paired = mode.estimate is not None and n in levels
+        out.append(Coarse(levels[n], mode.estimate.value) if paired and mode.estimate else None)
+    return out or [None] * len(compared.indices)

@@ -41,10 +41,10 @@ def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: It
 
     def solve(effects: Effects, at: Iterable[float]) -> dict[float, Converged | Failure]:
         """Core with these effects, at least at the speeds ``at``."""
-        known = solved.setdefault(effects, {})
-        if new := [omega for omega in at if omega not in known]:
-            known |= zip(new, converged(blade, new, compare, effects), strict=True)
-        return known
+        by_speed = solved.setdefault(effects, {})
+        if new := [omega for omega in at if omega not in by_speed]:
+            by_speed |= zip(new, converged(blade, new, compare, effects), strict=True)
+        return by_speed
 
     full = solve(ALL_EFFECTS, speeds)
     absent = {omega: _absent(omega, modes) for omega, modes in full.items() if isinstance(modes, Failure)}
@@ -68,43 +68,45 @@ def _references(
     blade: Blade, speeds: Sequence[float], target: float, kept: Effects, solve: Solve
 ) -> list[Reference | Failure]:
     felt_at = {omega: felt(kept, blade, omega) for omega in speeds}
-    mine = {
+    reduced = {
         omega: solve(effects, [o for o in speeds if felt_at[o] == effects])[omega] for omega, effects in felt_at.items()
     }
     full = solve(ALL_EFFECTS, ())
-    solved = {omega: one for omega, one in mine.items() if not isinstance(one, Failure)}
-    partners = {omega: _partners(one, full[omega]) for omega, one in solved.items()}
-    shifted = [omega for omega, one in solved.items() if _shifted(one, partners[omega][0], target)]
-    found: dict[float, list[list[Effect]]] = {omega: [[] for _ in one.modes] for omega, one in solved.items()}
+    solved = {omega: answer for omega, answer in reduced.items() if not isinstance(answer, Failure)}
+    partners = {omega: _partners(answer, full[omega]) for omega, answer in solved.items()}
+    shifted = [omega for omega, answer in solved.items() if _shifted(answer, partners[omega][0], target)]
+    changes: dict[float, list[list[Effect]]] = {omega: [[] for _ in answer.modes] for omega, answer in solved.items()}
     for name in (f.name for f in fields(kept)):  # each effect alone
         lacking = [omega for omega in shifted if not getattr(felt_at[omega], name)]
         alone = solve(replace(ALL_EFFECTS, **{name: False}), lacking)
         for omega in lacking:
             without, _ = _partners(solved[omega], alone[omega])
-            for effects, f, whole in zip(found[omega], without, partners[omega][0], strict=True):
+            for effects, f, whole in zip(changes[omega], without, partners[omega][0], strict=True):
                 effects.append(Effect(name.replace("_", " "), _change(f, whole)))
     return [
-        Reference(one, *partners[omega], tuple(map(tuple, found[omega]))) if not isinstance(one, Failure) else one
-        for omega, one in mine.items()
+        Reference(answer, *partners[omega], tuple(map(tuple, changes[omega])))
+        if not isinstance(answer, Failure)
+        else answer
+        for omega, answer in reduced.items()
     ]
 
 
-def _shifted(mine: Converged, whole: Sequence[float | None], target: float) -> bool:
+def _shifted(reduced: Converged, whole: Sequence[float | None], target: float) -> bool:
     """Whether a mode changes by more than the target due to what is left out."""
-    values = [s.estimate.value if s.estimate else None for s in mine.modes]
-    changes = [_change(value, f) for value, f in zip(values, whole, strict=True)]
-    return any(change is None or abs(change) > target for change in changes)
+    values = [s.estimate.value if s.estimate else None for s in reduced.modes]
+    shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
+    return any(change is None or abs(change) > target for change in shifts)
 
 
 def _change(without: float | None, whole: float | None) -> float | None:
     return without / whole - 1.0 if without and whole else None
 
 
-def _partners(mine: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
-    """Frequencies in ``other`` of the modes of ``mine``, and the MACs of the shapes."""
+def _partners(reduced: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
+    """Frequencies in ``other`` of the modes of ``reduced``, and the MACs of the shapes."""
     if isinstance(other, Failure):
-        return (None,) * len(mine.modes), (0.0,) * len(mine.modes)
+        return (None,) * len(reduced.modes), (0.0,) * len(reduced.modes)
     theirs = dict(zip(other.indices, other.modes, strict=True))
-    partners = pair(mine.spectrum, other.spectrum, mine.indices, least=MAJORITY)
+    partners = pair(reduced.spectrum, other.spectrum, reduced.indices, least=MAJORITY)
     estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in partners]
     return tuple(e.value if e else None for e in estimates), tuple(p.mac for p in partners)

@@ -77,14 +77,14 @@ def same_code(
         return [(omega, elements, r.core.count) for omega, r in core]
 
     elements = min(ELEMENTS, finest)
-    mine = ask(elements)
-    if any(isinstance(answer, Failure) for answer in mine):
+    core_answers = ask(elements)
+    if any(isinstance(answer, Failure) for answer in core_answers):
         elements = finest
-        mine = ask(elements)
+        core_answers = ask(elements)
     again = [ask(elements, scale) for scale in (3.0, 7.0)]
     theirs = of_blades(answers(name, blade, runs(elements), limits, head.version))
-    noises = [rounding(a, others) for a, *others in zip(mine, *again, strict=True)]
-    rows = zip(core, theirs, mine, noises, strict=True)
+    noises = [rounding(a, others) for a, *others in zip(core_answers, *again, strict=True)]
+    rows = zip(core, theirs, core_answers, noises, strict=True)
     return joined(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
 
 
@@ -104,11 +104,11 @@ def papers_equations(head: Head, blade: Blade, elements: int, core: References) 
     ]
     for number, stiffness in meshes:
         run = (omega, number, reference.core.count)
-        (mine,) = of_blades(core_solver.answers(blade, [run], "half_end", stiffness))
-        if not isinstance(mine, Failure):
+        (core_answer,) = of_blades(core_solver.answers(blade, [run], "half_end", stiffness))
+        if not isinstance(core_answer, Failure):
             break
     (literal,) = of_blades([paper.answer(blade, run, stiffness)])
-    return same(head, omega, reference, literal, mine)
+    return same(head, omega, reference, literal, core_answer)
 
 
 def _compared(core: References) -> Callable[[float, Sequence[Spectrum]], Compared]:
