@@ -125,17 +125,18 @@ def _rounding(each: AzimuthSet, header: tuple[Array, Array], adjoints: Complex, 
     inexact = each.half > 0
     _, first, group = np.unique(np.abs(each.A[inexact]), return_index=True, return_inverse=True)
     half = each.half[inexact][first]
-    sign = np.sign(each.A[inexact])
-    P, inverse = np.array(
-        [
-            states_of_components(each, float(psi), file.rotor_speed)
-            for psi, file in zip(each.azimuths, each.files, strict=True)
-        ]
-    ).swapaxes(0, 1)
+    ends = np.cumsum(np.count_nonzero(inexact, axis=(1, 2)))[:-1]
+    signs, groups = np.split(np.sign(each.A[inexact]), ends), np.split(group, ends)
+    transforms = [
+        states_of_components(each, float(psi), file.rotor_speed)
+        for psi, file in zip(each.azimuths, each.files, strict=True)
+    ]
     out = np.empty(len(adjoints))
     for m, (adjoint, shape) in enumerate(zip(adjoints, shapes.T, strict=True)):
-        change = ((adjoint @ inverse)[:, :, None] * (P @ shape)[:, None, :])[inexact] * sign
-        sums = np.bincount(group, change.real, len(half)) + 1j * np.bincount(group, change.imag, len(half))
+        sums = np.zeros(len(half), complex)
+        for (P, inverse), where, sign, index in zip(transforms, inexact, signs, groups, strict=True):
+            change = np.outer(adjoint @ inverse, P @ shape)[where] * sign
+            sums += np.bincount(index, change.real, len(half)) + 1j * np.bincount(index, change.imag, len(half))
         variance = float(np.sum((half * np.abs(sums)) ** 2))
         turned, faster = (np.einsum("j,kj->k", shape, adjoint @ each_) for each_ in header)
         variance += float(np.sum(np.abs(turned) ** 2) + np.abs(np.sum(faster)) ** 2)
