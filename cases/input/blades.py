@@ -220,7 +220,7 @@ BladeData = Beam | Dimensionless | Stations | Sections | FromFile
 
 def rigid_strains(blade: Blade) -> str:
     """What a blade's data leave out and therefore make rigid: ``axial and torsional stiffness``; empty if neither."""
-    rigid = np.isinf(np.diagonal(blade.stiffness, axis1=1, axis2=2)).any(0)
+    rigid = np.array(np.isinf(np.diagonal(blade.stiffness, axis1=1, axis2=2)).any(0))
     names = [name for name, strain in (("axial", AXIAL), ("torsional", TORSION)) if rigid[strain]]
     return f"{' and '.join(names)} stiffness" if names else ""
 

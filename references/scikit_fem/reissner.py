@@ -108,7 +108,7 @@ class ScikitFemReissner(BladeAdapter):
         if not clamped(blade):
             return weighed
         Z = _motions(beam, at_rest(beam))
-        full = Z @ np.eye(Z.shape[1])
+        full = np.asarray(Z.matmat(np.eye(Z.shape[1])))
         tip = full[np.array(beam.basis.get_dofs("tip").flatten())]
         K = _elastic(beam, _soft(beam)) + full.T @ (stiffening(beam, at_rest(beam), 0.0) @ full)
         return replace(weighed, flexibility=tip_flexibility(tip @ np.linalg.solve(K, tip.T)))
