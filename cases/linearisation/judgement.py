@@ -7,9 +7,10 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import azimuths, blades, disagreement, floquet, mode_tables, structure, tables, tracking
+from . import floquet, mode_tables, tracking
+from .checks import azimuths, blades, disagreement, structure, tables
+from .checks.frames import in_rotating_frame
 from .findings import DEFECT, Finding
-from .frames import in_rotating_frame
 from .judged import AVERAGED, FLOQUET, JudgedSet, Judgement, by_level
 from .lin_file import read
 from .mode_tables import is_table

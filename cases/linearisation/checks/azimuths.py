@@ -5,9 +5,9 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from .findings import DEFECT, LIMIT, Finding
-from .floquet import phases
-from .sets import AzimuthSet
+from ..findings import DEFECT, LIMIT, Finding
+from ..floquet import phases
+from ..sets import AzimuthSet
 
 Array = NDArray[np.float64]
 

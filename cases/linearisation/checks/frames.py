@@ -3,10 +3,10 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .findings import DEFECT, Finding
-from .modes import Mode, Spectrum, spectrum
-from .rotating_nodes import coriolis_content, rotated
-from .sets import AzimuthSet
+from ..findings import DEFECT, Finding
+from ..modes import Mode, Spectrum, spectrum
+from ..rotating_nodes import coriolis_content, rotated
+from ..sets import AzimuthSet
 
 Array = NDArray[np.float64]
 

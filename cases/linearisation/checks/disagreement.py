@@ -5,12 +5,12 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
+from ..findings import DEFECT, LIMIT, Finding
+from ..floquet import SAME_PHASE, interpolate, second_order
+from ..modes import Spectrum
+from ..multiblade import fixed_frame, states_of_components
+from ..sets import AzimuthSet
 from .azimuths import EXCHANGE
-from .findings import DEFECT, LIMIT, Finding
-from .floquet import SAME_PHASE, interpolate, second_order
-from .modes import Spectrum
-from .multiblade import fixed_frame, states_of_components
-from .sets import AzimuthSet
 
 Array = NDArray[np.float64]
 

@@ -5,9 +5,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from .findings import DEFECT, LIMIT, NOTE, Finding, count, listed
-from .sets import AzimuthSet
-from .states import RATE, STRUCTURAL
+from ..findings import DEFECT, LIMIT, NOTE, Finding, count, listed
+from ..sets import AzimuthSet
+from ..states import RATE, STRUCTURAL
 
 FEW_DIGITS = 4
 """Significant digits of OpenFAST's default format; fewer were cut off."""

@@ -5,10 +5,10 @@ from collections.abc import Iterator
 import numpy as np
 from numpy.typing import NDArray
 
-from .findings import DEFECT, LIMIT, NOTE, Finding, count, listed
-from .modes import Mode, Spectrum
-from .sets import AzimuthSet
-from .states import STRUCTURAL
+from ..findings import DEFECT, LIMIT, NOTE, Finding, count, listed
+from ..modes import Mode, Spectrum
+from ..sets import AzimuthSet
+from ..states import STRUCTURAL
 
 Array = NDArray[np.float64]
 

@@ -6,9 +6,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .findings import DEFECT, Finding, listed
-from .sets import AzimuthSet
-from .states import STRUCTURAL
+from ..findings import DEFECT, Finding, listed
+from ..sets import AzimuthSet
+from ..states import STRUCTURAL
 
 Array = NDArray[np.float64]
 
