@@ -126,7 +126,7 @@ def test_an_error_of_ours_in_a_column_costs_that_column(case: Case, monkeypatch:
     def wrong(*_: object) -> None:
         raise IndexError("list index out of range")
 
-    monkeypatch.setattr(columns, "_paper", wrong)
+    monkeypatch.setattr(columns, "papers_equations", wrong)
     found = run(case, "yoo-shin")
     lost = of(found, columns.PAPER)
     assert [c.verdict for c in lost] == ["fail", "fail"]
