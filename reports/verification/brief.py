@@ -119,7 +119,7 @@ def _margin(run: Run, case: str) -> dict[str, str]:
     return {
         "blade": plain(case),
         "answer": f"{summary.SYMBOL[verdict]} {verdict}",
-        "target": summary.allowed(setting.target) if setting else "",
+        "target": summary.allowed(setting.target) if setting and setting.target else "",
         "used": f"{100 * _used(run, case):.0f} %",
         "independent groups": f"{len(groups(witnesses(run, case)))}{required}",
     }
