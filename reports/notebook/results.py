@@ -213,7 +213,7 @@ class VerifyResult:
                     "shares": cells["shares"].iloc[0],
                     "verdict": next(v for v in summary.WORST_FIRST if v in verdicts),
                     "difference": cells["difference"].abs().max(),
-                    "modes": int((cells["quantity"] == "frequency").sum()),
+                    "modes": list(cells["quantity"]).count("frequency"),
                 }
             )
         return pd.DataFrame(rows, columns=["code", "shares", "verdict", "difference", "modes"])
