@@ -58,10 +58,7 @@ def relative_pencil(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """``beams.relative_pencil``."""
 
-def relative_strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
-    """``measures.relative_strain``."""
-
-def respond(laws: StrainLaws, x: Array, beta: Array, s: Array, on_eta: Array) -> tuple[Array, Array, Array]:
+def respond(laws: StrainLaws, x: Array, beta: Array) -> tuple[Array, Array]:
     """``measures.response``."""
 
 # trees
