@@ -114,16 +114,38 @@ inline py::tuple relative_pencil(const BeamArrays& of, const py::array& x, const
     return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring);
 }
 
-// Strain (n, 6) and its rate (n, 6, 12) at poses x (n, 4, 4) and β (n, 6 or 0).
-inline py::tuple respond(const LawArrays& of, const py::array& x, const py::array& beta) {
+// Strain (n,) of the reference curve at poses x (n, 4, 4) and β (n, 6 or 0), see measures.relative_strain.
+inline Doubles relative_strains(const LawArrays& of, const py::array& x, const py::array& beta) {
     const Pose* pose = items<Pose>(x, of.n);
     if (beta.size()) check(beta, 6 * of.n);
-    Doubles strains({of.n, py::ssize_t{6}}), rates(Shape{of.n, 6, 12});
+    Doubles out(of.n);
     for (int k = 0; k < of.n; ++k) {
-        const Strain e = strain(of.law, k, RelativePose(pose[k]), coordinates(beta, k));
-        fill<Vector6>(strains)[k] = e.strain, fill<Matrix<6, 12>>(rates)[k] = e.rate;
+        Vector3 found = linear(strain(of.law, k, RelativePose(pose[k]), coordinates(beta, k)).strain);
+        if (of.law.body_fixed) found[1] = found[2] = 0.0;
+        const Vector3 along = linear(of.law.eta[k]);
+        const double length = std::sqrt(dot(along, along));
+        out.mutable_data()[k] = length > 0.0 ? std::sqrt(dot(found, found)) / length : 0.0;
     }
-    return py::make_tuple(strains, rates);
+    return out;
+}
+
+// Strain (n, 6), its rate (n, 6, 12) and the geometric stiffness (n, 12, 12) of forces s and on_eta (n, 6).
+inline py::tuple respond(const LawArrays& of, const py::array& x, const py::array& beta, const py::array& s,
+                         const py::array& on_eta) {
+    const Pose* pose = items<Pose>(x, of.n);
+    const Vector6 *force = items<Vector6>(s, of.n), *conjugate = items<Vector6>(on_eta, of.n);
+    if (beta.size()) check(beta, 6 * of.n);
+    const py::ssize_t n = of.n;
+    Doubles found({n, py::ssize_t{6}}), rate(Shape{n, 6, 12}), curvature(Shape{n, 12, 12});
+    for (int k = 0; k < n; ++k) {
+        const RelativePose at(pose[k]);
+        const Strain e = strain(of.law, k, at, coordinates(beta, k));
+        auto bent = Matrix<12, 12>::zero();
+        add_curvature(of.law, k, at, e, force[k], conjugate[k], bent);
+        fill<Vector6>(found)[k] = e.strain, fill<Matrix<6, 12>>(rate)[k] = e.rate,
+        fill<Matrix<12, 12>>(curvature)[k] = bent;
+    }
+    return py::make_tuple(found, rate, curvature);
 }
 
 }  // namespace southwell

@@ -58,7 +58,10 @@ def relative_pencil(
 ) -> tuple[Array, Array, Array, Array, Array]:
     """``beams.relative_pencil``."""
 
-def respond(laws: StrainLaws, x: Array, beta: Array) -> tuple[Array, Array]:
+def relative_strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
+    """``measures.relative_strain``."""
+
+def respond(laws: StrainLaws, x: Array, beta: Array, s: Array, on_eta: Array) -> tuple[Array, Array, Array]:
     """``measures.response``."""
 
 # trees

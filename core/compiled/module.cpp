@@ -36,6 +36,7 @@ inline void define(py::module_& m) {
         .def(py::init<const LawArrays&, Indices, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles,
                       Doubles>());
     m.def("relative_pencil", &relative_pencil);
+    m.def("relative_strains", &relative_strains);
     m.def("respond", &respond);
 
     py::class_<LinkArrays>(m, "Links", py::module_local()).def(py::init<Indices, Doubles, Doubles>());

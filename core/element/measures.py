@@ -20,7 +20,7 @@ Two measures:
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Literal, NamedTuple
+from typing import Literal
 
 import numpy as np
 from numpy.typing import NDArray
@@ -87,16 +87,30 @@ def part(law: StrainLaw, at: slice) -> StrainLaw:
 _ARRAYS = ("undeformed", "shortening", "mean", "slope")
 
 
-class Response(NamedTuple):
-    """Strain ε (n, 6) of n elements at given relative poses and internal coordinates β, and its rate ∂ε/∂(ρ, β) (n, 6, 12)."""
+@dataclass(frozen=True)
+class Response:
+    """Strain of n elements at given relative poses and internal coordinates β, and its derivatives.
+
+    Attributes:
+        strain: (n, 6) ε.
+        rate: (n, 6, 12) E = ∂ε/∂(ρ, β).
+        curvature: (n, 12, 12) geometric stiffness: derivative with respect to (ρ, β) of the generalised forces on (ρ, β) due to
+            constant forces conjugate to ε and to η = log X.
+    """
 
     strain: Array
     rate: Array
+    curvature: Array
 
 
-def response(law: StrainLaw, x: Array, beta: Array) -> Response:
-    """Strain of n elements at relative poses ``x`` (n, 4, 4) and internal coordinates ``beta`` (n, 6 or 0)."""
-    return Response(*kernels.respond(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta)))
+def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_eta: Array | None = None) -> Response:
+    """Strain of n elements at relative poses ``x`` (n, 4, 4) and internal coordinates ``beta`` (n, 6 or 0).
+
+    ``s`` and ``on_eta`` (n, 6) are the constant forces of ``Response.curvature``, zero by default.
+    """
+    none = np.zeros((len(x), 6))
+    force, conjugate = (none if v is None else np.ascontiguousarray(v) for v in (s, on_eta))
+    return Response(*kernels.respond(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta), force, conjugate))
 
 
 def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
@@ -105,10 +119,7 @@ def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
     An element without length, such as a root joint, has none. Bending strains are not included: they need the sections'
     thickness, which a beam does not state.
     """
-    measured = 1 if law.measure == "body_fixed" else 3
-    strain = np.linalg.norm(response(law, x, beta).strain[:, :measured], axis=1)
-    length = np.linalg.norm(law.eta[:, :3], axis=1)
-    return np.divide(strain, length, out=np.zeros_like(strain), where=length > 0)
+    return kernels.relative_strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
 
 
 def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:
