@@ -63,7 +63,7 @@ def interpolate(azimuths: Array, matrices: Array, harmonics: int | None = None) 
         [np.ones(len(azimuths)), np.cos(3 * np.outer(azimuths, h)), np.sin(3 * np.outer(azimuths, h))]
     )
     flat = matrices.reshape(len(azimuths), -1)
-    coefficients = np.linalg.lstsq(basis, flat, rcond=None)[0]
+    coefficients = np.asarray(np.linalg.lstsq(basis, flat, rcond=None)[0], dtype=np.float64)
     shape = (-1, *matrices.shape[1:])
     residual = float(np.abs(flat - basis @ coefficients).max())
     periodic = float(np.abs(flat - flat.mean(axis=0)).max(initial=0.0))

@@ -135,7 +135,7 @@ def _rounding(each: AzimuthSet, header: tuple[Array, Array], adjoints: Complex, 
     for m, (adjoint, shape) in enumerate(zip(adjoints, shapes.T, strict=True)):
         sums = np.zeros(len(half), complex)
         for (P, inverse), where, sign, index in zip(transforms, inexact, signs, groups, strict=True):
-            change = np.outer(adjoint @ inverse, P @ shape)[where] * sign
+            change = np.asarray(np.outer(adjoint @ inverse, P @ shape)[where] * sign, dtype=np.complex128)
             sums += np.bincount(index, change.real, len(half)) + 1j * np.bincount(index, change.imag, len(half))
         variance = float(np.sum((half * np.abs(sums)) ** 2))
         turned, faster = (np.einsum("j,kj->k", shape, adjoint @ each_) for each_ in header)

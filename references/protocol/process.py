@@ -106,8 +106,10 @@ def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tupl
     if not said.stopped:
         return said.lines[1:], _crash(said.code, said.stderr.decode("utf-8", "replace"))
     kinds: dict[str, Kind] = {"no answer within": "timed out", "an answer of more than": "nonsense"}
-    kind = next((kind for start, kind in kinds.items() if said.stopped.startswith(start)), "crashed")
-    return said.lines[1:], Failure(kind, said.stopped)
+    for start, kind in kinds.items():
+        if said.stopped.startswith(start):
+            return said.lines[1:], Failure(kind, said.stopped)
+    return said.lines[1:], Failure("crashed", said.stopped)
 
 
 def _too_large(used: int, limits: Limits) -> str:

@@ -45,7 +45,8 @@ def modes(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequen
     M, C, K = first
     n = len(M)
     lower = -np.linalg.solve(M, np.hstack([K, C]))
-    values, vectors = np.linalg.eig(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]))
+    eigenpairs = np.linalg.eig(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]))
+    values, vectors = (np.asarray(a, np.complex128) for a in eigenpairs)
     order = np.argsort(np.abs(values), kind="stable")
     order = order[values[order].imag >= -1e-12 * np.abs(values).max()]
     T, _ = _fourier(n, groups, 0.0)

@@ -140,7 +140,8 @@ def _tension(mass: float, r: Array, dr: float) -> Array:
 def state_matrix(M: Array, D: Array, K: Array) -> Array:
     """[[0, 1], [−M⁻¹K, −M⁻¹D]]."""
     n = len(M)
-    return np.block([[np.zeros((n, n)), np.eye(n)], [-np.linalg.solve(M, K), -np.linalg.solve(M, D)]])
+    lower = np.hstack([-np.linalg.solve(M, K), -np.linalg.solve(M, D)])
+    return np.asarray(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]), dtype=np.float64)
 
 
 NAMES = (

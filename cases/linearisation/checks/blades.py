@@ -93,7 +93,7 @@ def _means(psi: Array, values: Array) -> tuple[Array, float] | None:
         h = np.arange(1, harmonics + 1)
         basis = np.column_stack([blade, np.cos(np.outer(psi, h)), np.sin(np.outer(psi, h))])
         if len(psi) > basis.shape[1] and np.linalg.cond(basis) < 30:
-            coefficients = np.linalg.lstsq(basis, values.ravel(), rcond=None)[0]
+            coefficients = np.asarray(np.linalg.lstsq(basis, values.ravel(), rcond=None)[0], dtype=np.float64)
             residual = values.ravel() - basis @ coefficients
             return coefficients[:3], float(np.abs(residual).max())
     return None

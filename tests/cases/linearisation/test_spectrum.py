@@ -41,7 +41,7 @@ def floquet_exponents(machine: Machine) -> Complex:
         k2 = b @ (Phi + h / 2 * k1)
         k3 = b @ (Phi + h / 2 * k2)
         Phi = Phi + h / 6 * (k1 + 2 * k2 + 2 * k3 + c @ (Phi + h * k3))
-    return np.log(np.linalg.eigvals(Phi).astype(complex)) / (h * steps)
+    return np.asarray(np.log(np.linalg.eigvals(Phi).astype(complex)) / (h * steps), dtype=np.complex128)
 
 
 def distance(value: complex, exponents: Complex, omega: float) -> float:

@@ -73,8 +73,9 @@ def frequencies(elements: int) -> np.ndarray:
     K[n + 3, n + 3] += TILT
     K[n + 4, n + 4] += TILT
     free = np.append(np.arange(n), [n + 2, n + 3, n + 4])
-    found = damped(*(part[np.ix_(free, free)] for part in (M, C, K))).frequencies
-    return found[found < 30.0]
+    M, C, K = (part[np.ix_(free, free)] for part in (M, C, K))
+    frequencies = damped(M, C, K).frequencies
+    return frequencies[frequencies < 30.0]
 
 
 def test_a_rotor_of_uniform_blades_on_a_hub() -> None:
