@@ -245,7 +245,7 @@ class PropertyCheck:
         unit: of both.
         difference: relative; None if it is infinite, or nothing is compared.
         target: relative.
-        verdict: pass, fail, not run, or not applicable.
+        verdict: pass, fail, inconclusive (a fingerprint that refinement still changes), not run, or not applicable.
         reason: one line for any verdict other than a plain pass.
     """
 

@@ -122,8 +122,8 @@ def _rows(case: str, code: str, version: str, found: Sequence[weighing.Weight], 
     return [
         PropertyCheck(
             *(case, code, version, "fingerprint", w.name, w.model, w.stations, w.unit, w.difference, weighing.TARGET),
-            "pass" if w.agrees else "fail",
-            note if w.agrees else w.line,
+            w.verdict,
+            note if w.verdict == "pass" else w.line,
         )
         for w in found
     ]

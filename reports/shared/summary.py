@@ -76,7 +76,7 @@ def status(run: Run) -> int:
     if run.unfinished:
         return INCOMPLETE
     blind = any(control.missed for control in run.controls)
-    bad = any(c.verdict in BAD for c in (*run.cells, *run.property_checks))
+    bad = any(c.verdict in BAD for c in run.cells) or any(c.verdict == "fail" for c in run.property_checks)
     return FAILED if not compared(run.cells) or blind or bad or short(run) else PASSED
 
 

@@ -2,9 +2,12 @@
 
 from collections.abc import Iterable
 
-from ...cases.judge.results import PropertyCheck, Run
+from ...cases.judge.results import PropertyCheck, Run, Verdict
 from ...cases.judge.verdict import percent
 from ..shared.summary import SYMBOL
+
+STATED: tuple[Verdict, ...] = ("fail", "inconclusive")
+"""Verdicts that are stated with their reason, the worse first; an inconclusive one contradicts nothing."""
 
 
 def contradictions(run: Run) -> list[str]:
@@ -23,8 +26,8 @@ def contradictions(run: Run) -> list[str]:
 
 
 def lines(run: Run) -> list[str]:
-    """Lines on failing properties, and on what was read a second time or could not be."""
-    out = [f"{_what(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict == "fail"]
+    """Lines on properties that fail or cannot be judged, and on what was read a second time or could not be."""
+    out = [f"{_what(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict in STATED]
     readings = [c for c in run.property_checks if c.quantity == "reading"]
     for case in dict.fromkeys(c.case for c in readings):
         mine = [c for c in readings if c.case == case]
@@ -62,7 +65,9 @@ def models(run: Run, case: str) -> list[dict[str, str]]:
         checks = [c for c in mine if c.code == code]
         by = {c.part: c for c in checks}
         moments, bends = ([c for c in checks if c.part.startswith(what)] for what in ("first moment", "tip flex"))
-        verdict = "fail" if any(c.verdict == "fail" for c in checks) else checks[0].verdict
+        verdict: Verdict = min(
+            (c.verdict for c in checks), key=lambda v: STATED.index(v) if v in STATED else len(STATED)
+        )
         reason = next((c.reason for c in checks if c.verdict == verdict and c.reason), verdict)
         out.append(
             {

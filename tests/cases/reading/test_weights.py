@@ -144,14 +144,14 @@ def test_one_per_cent_of_mass_in_the_shared_sampling_is_found_by_name(
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
     monkeypatch.setattr(core_blade, "_interpolate", heavier(core_blade._interpolate))
     found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade))
-    wrong = {w.name: w.difference for w in found if not w.agrees}
+    wrong = {w.name: w.difference for w in found if w.verdict == "fail"}
     assert set(wrong) == {"mass", "first moment of mass along x", "inertia about the rotor's axis"}
     assert wrong["mass"] == pytest.approx(0.01, rel=1e-3)
     line = next(w.line for w in found if w.name == "mass")
     assert line.startswith("mass: ")
     assert line.endswith(" kg by quadrature of the stations: +1 %")
     core = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
-    assert not core[0].agrees
+    assert core[0].verdict == "fail"
 
 
 def softer(old: Callable[..., Any]) -> Callable[..., Any]:
@@ -174,7 +174,7 @@ def test_one_per_cent_of_stiffness_in_the_shared_sampling_is_found_by_name(
     monkeypatch.setattr(core_blade, "_interpolate", softer(core_blade._interpolate))
     assembled = [wt.of_core(blade)] if name == "core" else models(code(name), blade)
     found = wt.weights(blade, wt.stations_of(blade), assembled)
-    wrong = {w.name: w.difference for w in found if not w.agrees}
+    wrong = {w.name: w.difference for w in found if w.verdict == "fail"}
     assert set(wrong) == {"tip flexibility along z"}
     assert wrong["tip flexibility along z"] == pytest.approx(1 / 0.99 - 1, rel=1e-2)
 
@@ -206,3 +206,20 @@ def test_fingerprints_cross_the_process_unchanged() -> None:
     (declined,) = worker.fingerprints("exudyn-ancf", blade, [10], Limits())
     assert isinstance(declined, Failure)
     assert declined.kind == "unsupported"
+
+
+@pytest.mark.parametrize(
+    ("difference", "finest", "change", "verdict"),
+    [
+        (5e-4, -2e-3, 8e-3, "pass"),  # lumped masses, extrapolated
+        (-3.5e-2, -5.4e-2, 5.8e-2, "inconclusive"),  # the thin tip of a blade with 16 elements
+        (1e-2, 1e-2, 0.0, "fail"),
+        (1e-2, 1.3e-2, -8e-3, "fail"),
+    ],
+)
+def test_a_model_that_refinement_still_changes_is_not_judged(
+    difference: float, finest: float, change: float, verdict: str
+) -> None:
+    weight = wt.Weight("tip flexibility about x", difference, finest, change, 1.0, 1.0, "rad/(N m)")
+    assert weight.verdict == verdict
+    assert ("too few elements" in weight.line) == (verdict == "inconclusive")
