@@ -1,4 +1,4 @@
-# make verify | make test | make test-slow | make coverage | make lint | make bench | make readme | make docs | make clean
+# make verify | make test | make test-slow | make coverage | make lint (style, types) | make bench | make readme | make docs | make clean
 # Python 3.11 or later with its headers and a C++ compiler are needed; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -15,7 +15,7 @@ export OPENBLAS_NUM_THREADS := 1
 # cached bytecode spares each of the many processes a compilation of the package
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: verify test test-slow coverage lint bench readme docs clean
+.PHONY: verify test test-slow coverage lint style types bench readme docs clean
 
 verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out; status=$$?; $(BIN)/southwell pages reports/out && exit $$status
@@ -31,12 +31,16 @@ coverage: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
 	$(BIN)/pytest -n 2 --dist loadfile -m "not slow" --cov=southwell --cov-report=term:skip-covered
 
-lint: $(INSTALLED)
+lint: style types
+
+style: $(INSTALLED)
 	$(BIN)/ruff check
 	$(BIN)/ruff format --check
 	$(BIN)/clang-format --dry-run -Werror $(KERNELS)
-	$(BIN)/pyright --threads --pythonpath $(BIN)/python
 	$(BIN)/lint-imports
+
+types: $(INSTALLED)
+	$(BIN)/pyright --threads --pythonpath $(BIN)/python
 
 # writes docs/run-time.md
 bench: $(INSTALLED)
