@@ -28,15 +28,19 @@ def contradictions(run: Run) -> list[str]:
 def lines(run: Run) -> list[str]:
     """Lines on properties that fail or cannot be judged, and on what was read a second time or could not be."""
     out = [f"{_what(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict in STATED]
+    agreeing: dict[str, list[str]] = {}  # reader → properties of blades
     readings = [c for c in run.property_checks if c.quantity == "reading"]
     for case in dict.fromkeys(c.case for c in readings):
-        mine = [c for c in readings if c.case == case]
-        if all(c.verdict == "pass" for c in mine):
-            out.append(
-                f"Second reading: {mine[0].code} {mine[0].version} reads the same {len(mine)} properties ({case})."
+        checks = [c for c in readings if c.case == case]
+        if all(c.verdict == "pass" for c in checks):
+            agreeing.setdefault(f"{checks[0].code} {checks[0].version}", []).append(
+                f"{len(checks)} properties of {case}"
             )
-        elif mine[0].verdict == "not run":
-            out.append(f"Second reading: none: {mine[0].reason} ({case}).")
+        elif checks[0].verdict == "not run":
+            out.append(f"Second reading: none: {checks[0].reason} ({case}).")
+    for reader, blades in agreeing.items():
+        what = blades[0] if len(blades) == 1 else f"properties of each of {len(blades)} blades"
+        out.append(f"Second reading: {reader} reads the same {what}.")
     return out
 
 
