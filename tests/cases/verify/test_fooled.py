@@ -69,6 +69,7 @@ def status(code: str) -> int:
     return summary.status(Run(tuple(of(code))))
 
 
+@pytest.mark.slow
 def test_a_printed_number_is_not_excused_by_a_discretisation_that_leads_elsewhere() -> None:
     """Core without geometric stiffness at 10 rad/s: with 50 elements it gives the printed number as long as those are right;
     their refinements lead to 11.7 rad/s, and not to the 3.4 that is core's then."""
@@ -126,6 +127,7 @@ def test_a_wide_bracket_is_an_estimate_and_no_comparison() -> None:
     assert evidence.answer(Run(tuple(cells))).startswith("Open: nothing was compared.")
 
 
+@pytest.mark.slow
 def test_a_wide_target_is_coarse_and_no_evidence() -> None:
     """40 % away from core with a target of 50 % once was a pass, and counted as a group."""
     case = library.load(PARK)
@@ -146,6 +148,7 @@ def test_a_wide_target_is_coarse_and_no_evidence() -> None:
     assert not summary.compared(cells)
 
 
+@pytest.mark.slow
 def test_a_code_that_ignores_elements_is_inconclusive() -> None:
     """The same digits on three meshes 0.09 % off once were a pass with an uncertainty of 2e-9."""
     cells = of("deaf")
