@@ -182,7 +182,7 @@ def test_slurm_jobs_are_submitted_and_cancelled(tmp_path: Path, monkeypatch: pyt
     assert (tmp_path / "cancelled").read_text().strip()
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_verify_gives_the_same_results_on_a_cluster(cluster: Any, tmp_path: Path) -> None:
     found = {}
     for name, options in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):

@@ -109,6 +109,7 @@ def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(
     assert (out / RESULTS).read_bytes() == earlier
 
 
+@pytest.mark.nightly
 def test_a_disk_that_fills_up_keeps_what_is_there(tmp_path: Path, undisturbed: Path) -> None:
     """A limit on the size of files stands for the disk: no answer can be written, and the next run continues."""
 

@@ -93,7 +93,7 @@ def test_the_report(project: pytest.Pytester) -> None:
     assert len(history.entry(run, "x").cells) == len(run.cells)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_the_report_from_several_processes(project: pytest.Pytester) -> None:
     pytest.importorskip("xdist")
     out = project.path / "out"

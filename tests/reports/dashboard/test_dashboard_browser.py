@@ -144,9 +144,10 @@ def test_wide_enough_only_the_matrix_scrolls_and_it_shows_that(tab: Any, site: P
     hidden = (
         "all => all.filter(b => b.offsetParent && b.scrollWidth > b.clientWidth + 1).map(b => b.firstChild.className)"
     )
+    tab.set_viewport_size({"width": 1440, "height": 800})
     for name in ("codes.html", "history.html", page("park-cantilever"), page("nrel-5mw"), page("pybmodes", "code")):
         tab.goto((site / name if name == "history.html" else site / "run-2" / name).as_uri())
-        assert tab.locator(".wide").evaluate_all(hidden) == []
+        assert tab.locator(".wide").evaluate_all(hidden) == [], name
     tab.goto((site / "run-2" / "index.html").as_uri())
     assert set(tab.locator(".wide").evaluate_all(hidden)) <= {"matrix"}
     tab.set_viewport_size({"width": 900, "height": 800})

@@ -273,7 +273,7 @@ def test_a_bad_load_is_one_line(
     assert all(word in err for word in words)
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_several_processes_give_the_same_numbers(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
