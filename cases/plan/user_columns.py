@@ -5,7 +5,7 @@ follows from the numerical solution, the inputs and the data (ASME V&V 20-2009).
 case, so core is also solved at theirs.
 """
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 from math import inf
@@ -38,29 +38,43 @@ def columns(variant: Variant, user_results: Sequence[UserResults], compare: Comp
         file = Path(one.path).name
         if one.measured:
             head = Head(variant.name, one.name, f"measured, in {file}", "measured", compare.target)
-            work = partial(_measured, head, variant.blade, compare, mine)
+            work = partial(_rows, _of_a_rig, head, variant.blade, compare, mine)
         else:
             head = Head(variant.name, one.name, f"from {file}", "code", compare.target, "nothing")
-            work = partial(_rows, head, variant.blade, compare, mine)
+            work = partial(_rows, _of_a_program, head, variant.blade, compare, mine)
         out.append(Column(one.name, ALL_EFFECTS, head, work, due="somewhere"))
     return out
 
 
-def _rows(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
-    """A cell for every frequency of a program, at the case's speed if the row's speed rounds to it, else at the row's."""
+Judge = Callable[[Head, float, int, Reference, Given], Cell]
+"""The cell of a row whose mode is compared: head, speed in rad/s, index of the mode, reference, row."""
+
+
+def _rows(judge: Judge, head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
+    """A cell for every frequency, at the case's speed if the row's speed rounds to it, else at the row's."""
     cells = []
     for row, omega, reference in _at_their_speeds(blade, compare, given, core):
         if isinstance(reference, Failure):
             cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {reference.reason}"))
-            continue
-        k = _place(row, reference)
-        sure = Estimate(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega))
-        cells.append(
-            _without_partner(head, omega, row, reference)
-            if k is None
-            else _unless_misnamed(printed(head, omega, k, reference, sure, ""), row, k, reference)
-        )
+        elif (k := _place(row, reference)) is None:
+            cells.append(_without_partner(head, omega, row, reference))
+        else:
+            cells.append(judge(head, omega, k, reference, row))
     return cells, []
+
+
+def _of_a_program(head: Head, omega: float, k: int, reference: Reference, row: Given) -> Cell:
+    estimate = Estimate(row.value.value, _uncertainty(row, omega))
+    return _unless_misnamed(printed(head, omega, k, reference, estimate, ""), row, k, reference)
+
+
+def _of_a_rig(head: Head, omega: float, k: int, reference: Reference, row: Given) -> Cell:
+    return measured(head, omega, k, reference, Datum(row.value.value, _uncertainty(row, omega), row.inputs))
+
+
+def _uncertainty(row: Given, omega: float) -> float:
+    """Relative uncertainty of a row's frequency, with the error due to its speed."""
+    return (row.value.uncertainty or 0.0) + _off(row, omega)
 
 
 def _at_their_speeds(
@@ -91,21 +105,6 @@ def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Ce
         "whose name is a convention: give the mode's number among all modes"
     )
     return replace(cell, verdict="inconclusive", reason=reason)
-
-
-def _measured(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
-    """A cell for every measured frequency, at the case's speed if the row's speed rounds to it, else at the row's."""
-    cells = []
-    for row, omega, reference in _at_their_speeds(blade, compare, given, core):
-        if isinstance(reference, Failure):
-            cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {reference.reason}"))
-            continue
-        k = _place(row, reference)
-        datum = Datum(row.value.value, (row.value.uncertainty or 0.0) + _off(row, omega), row.inputs)
-        cells.append(
-            _without_partner(head, omega, row, reference) if k is None else measured(head, omega, k, reference, datum)
-        )
-    return cells, []
 
 
 def _off(row: Given, omega: float) -> float:

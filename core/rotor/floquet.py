@@ -11,7 +11,7 @@ from scipy.optimize import linear_sum_assignment
 
 from ..threads import one_thread
 from .exponents import Exponents, exponents, separated
-from .periodic import Periodic, PeriodicError
+from .periodic import Periodic, PeriodicError, require_rotation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -33,8 +33,7 @@ def floquet(system: Periodic) -> Exponents:
     Raises:
         PeriodicError: the rotor stands still, a coordinate has no mass, or the integration does not converge.
     """
-    if not system.omega:
-        raise PeriodicError("omega: 0 rad/s: the matrices are constant, and exponents have no period")
+    require_rotation(system)
     with one_thread():
         return _converged(system)
 

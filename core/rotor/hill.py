@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from ..threads import one_thread
 from .exponents import Exponents, exponents, separated
 from .floquet import distance
-from .periodic import Periodic, PeriodicError
+from .periodic import Periodic, PeriodicError, require_rotation
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -38,8 +38,7 @@ def hill(system: Periodic) -> Exponents:
     Raises:
         PeriodicError: the rotor stands still, a coordinate has no mass, or the exponents do not converge.
     """
-    if not system.omega:
-        raise PeriodicError("omega: 0 rad/s: the matrices are constant, and exponents have no period")
+    require_rotation(system)
     with one_thread():
         return _converged(system)
 

@@ -84,6 +84,12 @@ class Periodic:
         return self.variation < CONSTANT
 
 
+def require_rotation(system: Periodic) -> None:
+    """Raise ``PeriodicError`` if the rotor stands still, so that exponents have no period."""
+    if not system.omega:
+        raise PeriodicError("omega: 0 rad/s: the matrices are constant, and exponents have no period")
+
+
 def sampled(evaluate: Callable[[float], Matrices], omega: float, names: tuple[str, ...]) -> Periodic:
     """A periodic system from its matrices at azimuths.
 

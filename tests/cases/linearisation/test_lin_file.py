@@ -2,7 +2,6 @@
 
 import gzip
 import random
-from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
@@ -137,6 +136,7 @@ def test_damaged_files_are_refused_in_one_line(old: str, new: str, words: str) -
 def test_mutated_files_are_refused_or_read(seed: int) -> None:
     """Nothing but ``CaseError``: lines and characters are removed, doubled, exchanged and replaced at random."""
     random_ = random.Random(seed)
+    refused, judged = [], 0
     for _ in range(20):
         lines = TEXT.splitlines()
         for _ in range(random_.randint(1, 3)):
@@ -157,8 +157,16 @@ def test_mutated_files_are_refused_or_read(seed: int) -> None:
                     )
                 case _:
                     lines = lines[:k] or [""]
-        with suppress(CaseError):
-            judge_set(azimuth_set("case", [lin_file("\n".join(lines))]))
+        try:
+            modes = judge_set(azimuth_set("case", [lin_file("\n".join(lines))])).modes
+        except CaseError as error:
+            refused.append(str(error))
+        else:
+            judged += 1
+            assert np.isfinite([mode.frequency for mode in modes]).all()
+    assert refused
+    assert not any("\n" in message for message in refused)
+    assert judged
 
 
 def test_azimuths_of_one_stem_are_one_set() -> None:

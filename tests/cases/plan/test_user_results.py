@@ -284,8 +284,9 @@ def test_a_family_is_a_convention_only_where_core_has_mixed_modes(
     head = Head("blade", "rig", "from results.csv", "code", 1e-3, "nothing")
     rows = read(tmp_path, HEAD + "1.0000, 5.35500, flapwise 1\n1.0000, 5.35500, 2").rows
     rows = [*rows, *read(tmp_path, HEAD + "1.0000, 6.50000, flapwise 1").rows]
+    blade = library.load("park-cantilever").variants[0].blade
     (named, numbered, wrong), _ = user_columns._rows(
-        head, library.load("park-cantilever").variants[0].blade, park().text.compare, rows, core
+        user_columns._of_a_program, head, blade, park().text.compare, rows, core
     )
     assert [c.verdict for c in (named, wrong, numbered)] == [verdict, "fail", "pass"]
     if verdict == "inconclusive":
