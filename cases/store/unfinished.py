@@ -17,8 +17,9 @@ import portalocker
 
 from ...references.protocol.store import Store
 from ..input.errors import CaseError
-from ..judge.results import Cell, Level, Planned, Run, Setting, gaps
+from ..judge.results import Cell, Level, Planned, Run, Setting
 from . import codec
+from .results_file import gaps
 
 NAME = "results.partial.sqlite"
 

@@ -15,8 +15,7 @@ from ...references.protocol.description import Description, describe
 from ...references.protocol.store import Store
 from ..faults import own, table
 from ..input.writing import writable
-from ..judge import results
-from ..judge.results import RESULTS, Control, Planned, Run, Setting
+from ..judge.results import Control, Planned, Run, Setting
 from ..plan import measurements, names, user_results
 from ..plan.blade import BladeSubject
 from ..plan.request import Execution, Request, command_line
@@ -26,7 +25,8 @@ from ..plan.subjects import subjects
 from ..plan.user_results import UserResults
 from ..run.executors import Serial, executor
 from ..run.software import Software
-from ..store import unfinished
+from ..store import results_file, unfinished
+from ..store.results_file import RESULTS
 from ..store.stored import Stored
 from ..store.unfinished import Unfinished
 from . import matrix
@@ -150,10 +150,10 @@ def _kept(request: Request, plan: Plan, out: Path, users: Store | None, observer
             try:
                 scratch.mkdir()
                 run = _solved(request, plan, pool, users, answers, observer)
-                if missing := results.gaps(run):
+                if missing := results_file.gaps(run):
                     run = replace(run, unfinished=missing)
                 else:
-                    results.write(out / RESULTS, run)
+                    results_file.write(out / RESULTS, run)
             except (KeyboardInterrupt, BrokenExecutor, OSError) as error:
                 stack.close()
                 run = replace(unfinished.read(answers.path), unfinished=_reason(error))

@@ -85,8 +85,7 @@ class Report:
         """
         if self.file is None:
             return
-        from ...cases.judge import results
-        from ...cases.store import codec
+        from ...cases.store import codec, results_file
         from ..verification import report as matrix_report
 
         run = self._run()
@@ -95,7 +94,7 @@ class Report:
         with self.open:
             try:
                 if not run.unfinished:
-                    results.write(path, run)
+                    results_file.write(path, run)
                 if not run.unfinished or not path.exists():
                     matrix_report.write(run, self.folder)
                 if not run.unfinished:

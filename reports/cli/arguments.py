@@ -11,10 +11,10 @@ from cyclopts.validators import Number
 
 from ...cases.input.errors import CaseError
 from ...cases.input.writing import writable
-from ...cases.judge import results
-from ...cases.judge.results import RESULTS, Run
+from ...cases.judge.results import Run
 from ...cases.run.cluster import SLURM
-from ...cases.store import unfinished
+from ...cases.store import results_file, unfinished
+from ...cases.store.results_file import RESULTS
 from .errors import IncompleteError, UsageError
 
 
@@ -85,7 +85,7 @@ def found(path: Path) -> Run:
     if os.path.isdir(path):
         file = path / unfinished.NAME if (path / unfinished.NAME).exists() else path / RESULTS
     try:
-        run = unfinished.read(file) if file.name == unfinished.NAME else results.read(file)
+        run = unfinished.read(file) if file.name == unfinished.NAME else results_file.read(file)
     except OSError as error:
         message = f"cannot be read ({error.strerror}): give a folder that `southwell verify --out` has written"
         raise CaseError(f"{file}: {message}") from error

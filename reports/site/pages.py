@@ -11,11 +11,11 @@ from pathlib import Path
 from pkgutil import walk_packages
 
 from ...cases.input import library
-from ...cases.judge import results
 from ...cases.judge.results import Run, Setting
 from ...cases.plan import mechanism
 from ...cases.plan.blade import blades
 from ...cases.plan.subject import Subject
+from ...cases.store import results_file
 from ...references.protocol import registry as registry
 from ..cli import app, arguments
 from ..shared.markdown import plain, table
@@ -43,7 +43,7 @@ def pages(folder: Path) -> Pages:
         folder: folder of a run's results; without them, code pages explain how to get them, and the report is left out.
     """
     path = folder / arguments.RESULTS
-    run = results.read(path) if path.exists() else Run(())
+    run = results_file.read(path) if path.exists() else Run(())
     return {
         **cases(),
         **codes(run),

@@ -12,8 +12,8 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 
 from ...cases.input import atomic
-from ...cases.judge import results
 from ...cases.judge.results import Cell, Run
+from ...cases.store import results_file
 from ..shared import summary
 from ..shared.markdown import plain, table
 from ..shared.summary import broad, columns
@@ -133,7 +133,7 @@ Results of `make verify`. Each row is a blade, each column a code or a published
 verdict](reading-a-verdict.md) explains the signs. The column *paper's equations, literally* checks Southwell's fast
 solver against the equations of Park et al. (2010), written out with dense matrices.
 
-{block(results.read(ROWS))}"""
+{block(results_file.read(ROWS))}"""
 
 
 def example(folder: Path) -> str:
@@ -164,17 +164,17 @@ def put(text: str, new: str, what: str) -> str:
 
 def written(text: str) -> str:
     """The README with the table of results from the stored rows."""
-    return put(text, five(results.read(ROWS)), "results")
+    return put(text, five(results_file.read(ROWS)), "results")
 
 
 def main() -> None:
     """Update the stored rows from a results file, if one is given; write the README and its figure."""
     if sys.argv[1:]:
         path = Path(sys.argv[1])
-        run = results.read(path)
+        run = results_file.read(path)
         if run.unfinished:
             sys.exit(f"{path}: {run.unfinished}: the tables are those of a complete run")
-        results.write(ROWS, condense(run))
+        results_file.write(ROWS, condense(run))
     with TemporaryDirectory() as folder:
         output = example(Path(folder))
         FIGURE.parent.mkdir(exist_ok=True)

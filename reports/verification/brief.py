@@ -7,9 +7,10 @@ from hashlib import sha256
 from pathlib import Path
 
 from ...cases.input import atomic
-from ...cases.judge.results import RESULTS, Run
+from ...cases.judge.results import Run
 from ...cases.judge.witnesses import INDEPENDENT, Witness, groups, witnesses
 from ...cases.regression.history import this_machine
+from ...cases.store.results_file import RESULTS
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..shared import summary
 from ..shared.markdown import plain, table

@@ -11,8 +11,8 @@ import pytest
 
 from southwell.cases.faults.table import BY_NAME, FAST
 from southwell.cases.input import library
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.store import results_file
 from southwell.tests.support.codes import BLADE_CODES
 
 from ..support.capabilities import BLADES, CODES, TABLES, allowed, solves
@@ -29,7 +29,7 @@ CASES = {variant.name: (case, variant) for case in library.everything()[0].value
 
 @pytest.fixture(scope="module")
 def run() -> Run:
-    complete = results.read(Path(os.environ["SOUTHWELL_RUN"]))
+    complete = results_file.read(Path(os.environ["SOUTHWELL_RUN"]))
     assert not complete.unfinished
     return complete
 

@@ -4,9 +4,9 @@ from dataclasses import replace
 from datetime import UTC, datetime, timedelta
 from pathlib import Path
 
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Level, Run
 from southwell.cases.regression import history
+from southwell.cases.store import results_file
 from southwell.reports.site import readme
 
 HOSTILE = "<img src=x onerror=alert(1)>"
@@ -19,7 +19,7 @@ LOST = "pinocchio"  # in none of the last
 
 def run() -> Run:
     """The README's rows, of a machine without one of the codes; refinements, which they lack, of order 4 towards core."""
-    plain = results.read(readme.ROWS)
+    plain = results_file.read(readme.ROWS)
     levels = tuple(
         Level(c.case, c.omega, c.mode, c.code, n, c.reference * (1 + n**-4.0))
         for c in plain.cells

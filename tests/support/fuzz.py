@@ -183,14 +183,14 @@ MUTATIONS = (_cut, _flip, _insert, _lines, *([_replace(NUMBER)] * 4), *([_replac
 def seeds(folder: Path) -> dict[str, Path]:
     """Everything that is mutated, written into ``folder``: what kind of file (by what reads it) → the file that is named."""
     from southwell.cases.condense import condensed, condensing
-    from southwell.cases.judge import results
     from southwell.cases.regression import history
+    from southwell.cases.store import results_file
 
     shutil.copytree(DATA / "blades", folder, dirs_exist_ok=True)
     shutil.copytree(DATA / "fuzz", folder, dirs_exist_ok=True)
     shutil.copy(DATA / "calculix_substructure.mtx", folder)
     run = _run()
-    results.write(folder / "results.jsonl", run)
+    results_file.write(folder / "results.jsonl", run)
     history.append(folder / "history.jsonl", history.entry(run, "abc", "here"))
     condensed.write(folder / "segments.json", condensing.condense(folder / "bar.toml").blade)
     for name in ("pipe", "folder", "loop"):  # what a mutated name may lead to

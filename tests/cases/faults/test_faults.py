@@ -12,8 +12,9 @@ import pytest
 from southwell.cases.faults import mechanisms, seeding, table
 from southwell.cases.faults.table import ALL, BY_NAME, FAST
 from southwell.cases.input.errors import CaseError
-from southwell.cases.judge import printed, refined, results, verdict
+from southwell.cases.judge import printed, refined, verdict
 from southwell.cases.judge.results import Control, Run
+from southwell.cases.store import results_file
 from southwell.references.protocol.description import Description
 from southwell.reports.shared import summary
 from southwell.reports.verification import controls as reported
@@ -156,5 +157,5 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
 
 def test_rows_survive_the_disk(tmp_path: Path) -> None:
     one = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), change=None)))
-    results.write(tmp_path / "results.jsonl", one)
-    assert results.read(tmp_path / "results.jsonl") == one
+    results_file.write(tmp_path / "results.jsonl", one)
+    assert results_file.read(tmp_path / "results.jsonl") == one

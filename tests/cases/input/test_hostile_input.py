@@ -13,9 +13,9 @@ from southwell.cases.condense import condensed, condensing
 from southwell.cases.input import files, mechanisms, readers, schema, toml
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers.text import MAX_LINES
-from southwell.cases.judge import results
 from southwell.cases.plan import user_results
 from southwell.cases.regression import history
+from southwell.cases.store import results_file
 from southwell.core.condense import matrix_files
 from southwell.core.condense.exported import MatrixFileError
 from southwell.core.regular_files import FileRefusedError, read_bytes
@@ -61,7 +61,7 @@ def test_files_larger_than_stated_are_not_read(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match=r"larger than 16 MB"):
         readers.read(tmp_path / "large.dat")
     with pytest.raises(OSError, match=r"larger than 256 MB"):
-        results.read(tmp_path / "large.dat")
+        results_file.read(tmp_path / "large.dat")
 
 
 @pytest.mark.parametrize(
@@ -199,7 +199,7 @@ def test_nesting_is_bounded(tmp_path: Path, name: str, text: str, deep: int) -> 
     path = tmp_path / name
     path.write_text(text.format("[" * deep, "]" * deep, "a." * deep))
     read = {".toml": toml.document, ".yaml": readers.read, ".json": condensed.read}.get(path.suffix)
-    read = read or {"results": results.read, "history": history.read}[path.stem]
+    read = read or {"results": results_file.read, "history": history.read}[path.stem]
     with pytest.raises((CaseError, ValueError)) as caught:
         read(path)
     assert str(path) in str(caught.value)
@@ -322,7 +322,7 @@ def test_a_negative_mass_on_the_diagonal(folder: Path) -> None:
 )
 def test_results_that_no_run_writes(folder: Path, old: str, new: str, phrase: str) -> None:
     with pytest.raises(ValueError, match=phrase) as caught:
-        results.read(changed(folder / "results.jsonl", old, new))
+        results_file.read(changed(folder / "results.jsonl", old, new))
     assert "line " in str(caught.value)
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from southwell.cases.input import library, readers
 from southwell.cases.input.readers import Mount
-from southwell.cases.judge import results
 from southwell.cases.plan.settings import NOT_USED
+from southwell.cases.store import results_file
 
 from ...reports.cli.test_cli import southwell
 
@@ -173,6 +173,6 @@ def test_in_a_run_its_results_and_its_report(tmp_path: Path, capsys: pytest.Capt
     )
     _, _, err = southwell(line, capsys)
     assert "BlPitch (largest 3 deg, elastodyn_main.dat)" in err
-    (setting,) = results.read(tmp_path / "r" / "results.jsonl").settings
+    (setting,) = results_file.read(tmp_path / "r" / "results.jsonl").settings
     assert setting.facts[NOT_USED].count("BlPitch (largest 3 deg") == 1
     assert (tmp_path / "r" / "report.md").read_text().count("BlPitch (largest 3 deg") == 1

@@ -9,11 +9,11 @@ import pytest
 from southwell.cases.input import blades
 from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.openfast import elastodyn
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, PropertyCheck, Run
 from southwell.cases.plan.request import Execution, Request
 from southwell.cases.plan.subjects import subjects
 from southwell.cases.solve import properties as tasks
+from southwell.cases.store import results_file
 from southwell.cases.verify.pipeline import verify
 from southwell.core import blade as core_blade
 from southwell.core.blade import Blade
@@ -74,8 +74,8 @@ def test_a_right_reader_is_confirmed(deck: Path, tmp_path: Path) -> None:
     case = found.property_checks[0].case
     assert len(properties.readings(found, case)) == 18
     assert [row["model of"] for row in properties.models(found, case)] == ["core", "exudyn-tree"]
-    results.write(tmp_path / "results.jsonl", found)
-    assert results.read(tmp_path / "results.jsonl").property_checks == found.property_checks
+    results_file.write(tmp_path / "results.jsonl", found)
+    assert results_file.read(tmp_path / "results.jsonl").property_checks == found.property_checks
 
 
 def test_exchanged_stiffnesses_end_a_run_with_status_1_by_name(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:

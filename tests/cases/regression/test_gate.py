@@ -10,11 +10,10 @@ import numpy as np
 import pytest
 from rich.table import Table
 
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.regression import gate, history
 from southwell.cases.regression.gate import compare
-from southwell.cases.store import codec
+from southwell.cases.store import codec, results_file
 from southwell.cases.store.unfinished import Unfinished
 from southwell.reports.ci import gate_text, junit
 from southwell.reports.shared.units import BY_KEY
@@ -217,12 +216,12 @@ def test_a_summary_s_tables_are_cut_and_say_so() -> None:
 def folders(tmp_path: Path) -> Callable[[str], str]:
     for name, run in {"before": BEFORE, "after": BAD}.items():
         (tmp_path / name).mkdir()
-        results.write(tmp_path / name / "results.jsonl", run)
+        results_file.write(tmp_path / name / "results.jsonl", run)
     moved = replace(BEFORE, cells=at(BEFORE.cells, 1, value=20.1))
-    results.write(tmp_path / "moved.jsonl", moved)
+    results_file.write(tmp_path / "moved.jsonl", moved)
     more = replace(BEFORE, cells=(*BEAM, *(replace(c, case="another") for c in BEAM)))
-    results.write(tmp_path / "two.jsonl", more)
-    results.write(tmp_path / "one.jsonl", replace(BEFORE, cells=BEAM))
+    results_file.write(tmp_path / "two.jsonl", more)
+    results_file.write(tmp_path / "one.jsonl", replace(BEFORE, cells=BEAM))
     for commit in ("good1", "bad2"):
         run = BEFORE if commit == "good1" else BAD
         history.append(tmp_path / "history.jsonl", history.entry(run, commit))
@@ -311,7 +310,7 @@ def test_verify_writes_junit(tmp_path: Path, capsys: pytest.CaptureFixture[str])
     file = tmp_path / "j.xml"
     line = f"verify rotating-cable --codes southwell-equation --faults none --workers 1 --out {tmp_path} --junit {file}"
     status, _, _ = southwell(line, capsys)
-    run = results.read(tmp_path / "results.jsonl")
+    run = results_file.read(tmp_path / "results.jsonl")
     root = ElementTree.parse(file)
     assert status == 0
     assert len(root.findall(".//testcase")) == len(run.cells) > 0

@@ -10,10 +10,10 @@ from pathlib import Path
 import portalocker
 import pytest
 
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Control, Run
 from southwell.cases.regression import history
 from southwell.cases.regression.history import Detection, Entry, Point
+from southwell.cases.store import results_file
 
 from ...reports.cli.test_cli import southwell
 
@@ -127,7 +127,7 @@ def test_another_file_is_refused(tmp_path: Path, text: str, phrase: str) -> None
 
 
 def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.write(tmp_path / "results.jsonl", RUN)
+    results_file.write(tmp_path / "results.jsonl", RUN)
     file = tmp_path / "history.jsonl"
     for where in (tmp_path, tmp_path / "results.jsonl"):  # the folder, or the file in it
         line = f"history add {where} --history {file} --commit abc --machine quiet"
@@ -144,7 +144,7 @@ def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
 
 
 def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch) -> None:
-    results.write(tmp_path / "results.jsonl", RUN)
+    results_file.write(tmp_path / "results.jsonl", RUN)
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("GIT_CEILING_DIRECTORIES", str(tmp_path.parent))
     status, _, err = southwell("history add . --history history.jsonl", capsys)
@@ -163,7 +163,7 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
 )
 def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, phrase: str) -> None:
     (tmp_path / "empty").write_bytes(b"")
-    results.write(tmp_path / "good", RUN)
+    results_file.write(tmp_path / "good", RUN)
     status, _, err = southwell(line.format(tmp_path), capsys)
     assert status == 2
     assert err.count("\n") == 1
@@ -177,7 +177,7 @@ ADD, GATE = "history add {0}/cut --history {0}/h.jsonl --commit a", "gate {0}/go
 def test_an_incomplete_run_is_not_what_others_are_compared_with(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, lines: int
 ) -> None:
-    results.write(tmp_path / "good", RUN)
+    results_file.write(tmp_path / "good", RUN)
     whole = (tmp_path / "good").read_bytes().splitlines(keepends=True)
     (tmp_path / "cut").write_bytes(b"".join(whole[:lines]))
     status, out, err = southwell(line.format(tmp_path), capsys)

@@ -10,10 +10,10 @@ import pytest
 from scipy.integrate import trapezoid
 
 from southwell.cases.input import library
-from southwell.cases.judge import results
 from southwell.cases.judge.results import BudgetEntry, Run
 from southwell.cases.plan.blade import blades
 from southwell.cases.solve import error_budget
+from southwell.cases.store import results_file
 from southwell.cases.verify import matrix
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import Effects
@@ -168,8 +168,8 @@ def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
 @pytest.mark.slow
 def test_the_budget_survives_the_disk_and_is_shown(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
-    results.write(path, run())
-    assert results.read(path) == run()
+    results_file.write(path, run())
+    assert results_file.read(path) == run()
     rows = reported.rows(run(), CASE)
     assert [row["cause"] for row in rows] == sorted(
         (row["cause"] for row in rows), key=["discretisation", "model form", "rounding"].index

@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 
 from southwell.cases.input.schema import Case, read
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.plan.blade import blades
 from southwell.cases.plan.blade_columns import PAPER
+from southwell.cases.store import results_file
 from southwell.cases.verify import matrix
 from southwell.cases.verify.matrix import Progress
 from southwell.reports.shared import summary
@@ -234,8 +234,8 @@ def test_more_modes_than_there_are_cost_the_case(case) -> None:
 def test_results_survive_the_disk(case, tmp_path: Path) -> None:
     run = solve(case(), "analytic:GOOD", "analytic:ABSENT")
     path = tmp_path / "results.jsonl"
-    results.write(path, run)
-    assert results.read(path) == run
+    results_file.write(path, run)
+    assert results_file.read(path) == run
     assert {p.name for p in tmp_path.iterdir()} == {"results.jsonl", "rest.toml"}
 
 
@@ -243,4 +243,4 @@ def test_a_foreign_line_is_named(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     path.write_text('{"kind": "cell", "case": "x"}\n')
     with pytest.raises(ValueError, match=r"results\.jsonl: line 1: not a result"):
-        results.read(path)
+        results_file.read(path)

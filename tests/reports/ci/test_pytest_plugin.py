@@ -10,8 +10,8 @@ from pathlib import Path
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.judge import results
 from southwell.cases.regression import history
+from southwell.cases.store import results_file
 from southwell.cases.verify import user_solver
 from southwell.cases.verify.user_solver import UserSolver
 from southwell.core.modes import Modes
@@ -79,7 +79,7 @@ def test_the_mistaken_solver_fails_wherever_it_turns_and_its_fault_is_named(proj
 def test_the_report(project: pytest.Pytester) -> None:
     out = project.path / "out"
     project.runpytest("--southwell-cases", "wright-flapwise,tip-mass", "--southwell-report", str(out))
-    run = results.read(out / "results.jsonl")
+    run = results_file.read(out / "results.jsonl")
     core = [c for c in run.cells if c.code == "beamfreq"]
     assert len(core) == 21 + 5  # a cell for each speed of a blade that it does not solve
     assert {c.verdict for c in core} == {"pass", "not applicable"}
@@ -99,7 +99,7 @@ def test_the_report_from_several_processes(project: pytest.Pytester) -> None:
     out = project.path / "out"
     options = ("-n", "2", "-k", "mode1", "--southwell-cases", "wright-flapwise", "--southwell-report", str(out))
     project.runpytest_subprocess(*options).assert_outcomes(passed=7)
-    assert len([c for c in results.read(out / "results.jsonl").cells if c.code == "beamfreq"]) == 7
+    assert len([c for c in results_file.read(out / "results.jsonl").cells if c.code == "beamfreq"]) == 7
 
 
 @pytest.mark.slow

@@ -14,8 +14,8 @@ from typing import Any
 import pytest
 import yaml
 
-from southwell.cases.judge import results
 from southwell.cases.regression import history
+from southwell.cases.store import results_file
 from southwell.references.protocol import store
 from southwell.reports.cli import app as cli
 from southwell.reports.shared import statuses
@@ -156,7 +156,7 @@ def test_the_action_passes_then_fails_on_what_got_worse(tmp_path: Path) -> None:
     assert "### Southwell" in (tmp_path / "summary.md").read_text(encoding="utf-8")
     assert (tmp_path / "out" / "junit.xml").exists()
 
-    run = results.read(tmp_path / "out" / "results.jsonl")
+    run = results_file.read(tmp_path / "out" / "results.jsonl")
     history.append(tmp_path / "history.jsonl", history.entry(run, "first"))
     assert action(tmp_path, **FEW, strict="true")[0] == 0  # nothing moves by itself
 

@@ -16,9 +16,9 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.judge import results
-from southwell.cases.judge.results import RESULTS, Cell
-from southwell.cases.store import unfinished
+from southwell.cases.judge.results import Cell
+from southwell.cases.store import results_file, unfinished
+from southwell.cases.store.results_file import RESULTS
 from southwell.cases.verify import matrix
 from southwell.core.solve import modes
 from southwell.references.protocol.registry import names
@@ -138,7 +138,7 @@ def test_a_speed_without_a_steady_state_fails_its_own_cells(
     beam.write_text(BEAM.replace("10.0]", "1e5]"))
     status, _, _ = southwell(f"verify {beam} --codes exact-beam --faults none --out {tmp_path / 'out'}", capsys)
     assert status == 1
-    cells = results.read(tmp_path / "out" / RESULTS).cells
+    cells = results_file.read(tmp_path / "out" / RESULTS).cells
     wrong = [c for c in cells if c.omega == 1e5 and c.code == "exact-beam"]
     assert [c.verdict for c in wrong] == ["fail"]
     assert "no steady state" in wrong[0].reason
@@ -215,7 +215,7 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
         f"verify {beam} --codes exact-beam,yoo-shin --faults none --out {out} --workers 1", capsys
     )
     assert status == 0
-    run = results.read(out / "results.jsonl")
+    run = results_file.read(out / "results.jsonl")
     foreign = [c for c in run.cells if c.shares != "everything"]
     assert {(c.code, c.omega, c.mode) for c in foreign} == {
         (code, omega, mode) for code in ("exact-beam", "yoo-shin") for omega in (0.0, 10.0) for mode in (1, 2)

@@ -9,7 +9,7 @@ from rich.console import Console
 
 from southwell.cases.campbell.sweep import Named
 from southwell.cases.campbell.tracked import TrackedMode
-from southwell.cases.judge import results
+from southwell.cases.store import results_file
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
 from southwell.reports.cli.blade import show
@@ -64,7 +64,7 @@ def test_a_blade_file_is_verified_without_a_case(tmp_path: Path, capsys: pytest.
     options = f"--rpm 0,12.1 --codes assumed-modes --faults none --out {tmp_path}"
     status, out, _ = southwell(f"verify {BLADE} {options}", capsys)
     assert status == 0, out
-    run = results.read(tmp_path / "results.jsonl")
+    run = results_file.read(tmp_path / "results.jsonl")
     cells = [c for c in run.cells if c.code == "assumed-modes"]
     assert len(cells) == 12
     assert {c.verdict for c in cells} == {"pass"}
@@ -80,7 +80,7 @@ def test_a_changed_case_says_so_and_is_not_compared_with_its_printed_table(
 ) -> None:
     line = f"verify tip-mass --codes exact-beam --faults none --set mass=*1.1 --out {tmp_path}"
     assert southwell(line, capsys)[0] == 0
-    run = results.read(tmp_path / "results.jsonl")
+    run = results_file.read(tmp_path / "results.jsonl")
     assert run.settings[0].title.endswith("changed: mass × 1.1")
     assert not {c.role for c in run.cells} & {"table", "discretisation"}
 

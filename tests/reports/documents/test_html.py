@@ -11,7 +11,8 @@ from urllib.parse import unquote
 
 import pytest
 
-from southwell.cases.judge.results import Setting, write
+from southwell.cases.judge.results import Setting
+from southwell.cases.store.results_file import write
 from southwell.reports.cli import arguments
 from southwell.reports.documents import html
 from southwell.reports.shared import colours, summary

@@ -9,7 +9,7 @@ import pytest
 from markdown_it.token import Token
 
 from southwell.cases.input.errors import CaseError
-from southwell.cases.judge.results import write
+from southwell.cases.store.results_file import write
 from southwell.reports.cli import arguments
 from southwell.reports.cli import report as command
 from southwell.reports.documents import columns, document, pdf, print_nodes

@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 
 import southwell
 from southwell.cases.input.errors import CaseError
-from southwell.cases.judge import results
+from southwell.cases.store import results_file
 from southwell.core import solve
 from southwell.reports.cli.app import main
 
@@ -142,4 +142,4 @@ def test_a_verification_has_faults_limits_and_a_folder(blade: southwell.Blade, t
     assert {(c.verdict, c.value) for c in timed_out} == {("inconclusive", None)}
     assert [(c.control, c.detected_by) for c in result.run.controls] == [("no hub radius", ())]
     assert result.run.controls[0].needs == "an independent code that agrees on this blade"
-    assert results.read(tmp_path / "results.jsonl") == result.run
+    assert results_file.read(tmp_path / "results.jsonl") == result.run

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from southwell.cases.judge import results
+from southwell.cases.store import results_file
 
 PAGE = (Path(__file__).parents[3] / "docs" / "add-your-code.md").read_text(encoding="utf-8")
 
@@ -70,7 +71,7 @@ def test_its_own_tests_pass(folder: Path) -> None:
 def cells(folder: Path, part: str, installed: bool = False) -> list[results.Cell]:
     done = run(folder, *typed(part), "--faults", "none", installed=installed)
     assert done.returncode == 0, done.stdout + done.stderr
-    return [c for c in results.read(folder / "my-report" / "results.jsonl").cells if c.code == "my-code"]
+    return [c for c in results_file.read(folder / "my-report" / "results.jsonl").cells if c.code == "my-code"]
 
 
 @pytest.mark.slow

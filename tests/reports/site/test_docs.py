@@ -18,8 +18,8 @@ import pytest
 import yaml
 
 from southwell.cases.input import library
-from southwell.cases.judge import results
 from southwell.cases.plan.settings import settings
+from southwell.cases.store import results_file
 from southwell.references.protocol import registry
 from southwell.reports.cli import app as cli
 from southwell.reports.cli.arguments import RESULTS
@@ -132,7 +132,7 @@ def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
     passing = tuple(c for c in sample.cells if c.verdict not in BAD)
     run = replace(sample, cells=passing, controls=tuple(c for c in sample.controls if not c.missed))
     (tmp_path / "reports" / "out").mkdir(parents=True)
-    results.write(tmp_path / "reports" / "out" / RESULTS, run)
+    results_file.write(tmp_path / "reports" / "out" / RESULTS, run)
     shutil.copyfile(ROOT / "examples" / "nrel-5mw-blade.dat", tmp_path / "blade.dat")
     for text in blocks(page, "toml"):
         (tmp_path / f"{tomllib.loads(text)['name']}.toml").write_text(text, encoding="utf-8")

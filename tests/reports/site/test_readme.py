@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.judge import results
 from southwell.cases.solve import core_solver
+from southwell.cases.store import results_file
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.solve import modes
 from southwell.references.protocol import registry
@@ -33,11 +33,11 @@ def test_the_table_is_that_of_the_rows_beside_it() -> None:
 
 
 def test_the_rows_are_of_a_complete_run() -> None:
-    assert not results.read(readme.ROWS).unfinished
+    assert not results_file.read(readme.ROWS).unfinished
 
 
 def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_throughout() -> None:
-    run = results.read(readme.ROWS)
+    run = results_file.read(readme.ROWS)
     rows = [line.strip("| ").split(" | ") for line in readme.five(run).splitlines()[2:]]
     assert len(rows) == len(readme.SHOWN) == 5
     for (_, codes, largest, others, _), case in zip(rows, readme.SHOWN, strict=True):
@@ -80,12 +80,12 @@ def test_one_screen_comes_before_what_may_be_skipped() -> None:
 
 def test_the_page_of_results_has_every_case() -> None:
     page = readme.results_page()
-    assert all(f"| {case} |" in page for case in summary.cases(results.read(readme.ROWS)))
+    assert all(f"| {case} |" in page for case in summary.cases(results_file.read(readme.ROWS)))
 
 
 def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cases whose blade files are not part of the package may be among them."""
-    run = results.read(readme.ROWS)
+    run = results_file.read(readme.ROWS)
     all_, _ = library.everything()
     monkeypatch.delenv("SOUTHWELL_BLADES", raising=False)
     _, absent = library.everything()
@@ -98,7 +98,7 @@ def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.Monke
 
 def cores() -> list[float]:
     """Core's frequencies in the table of the paper's case, ascending."""
-    cells = [c for c in results.read(readme.ROWS).cells if c.case == CASE and c.omega == OMEGA]
+    cells = [c for c in results_file.read(readme.ROWS).cells if c.case == CASE and c.omega == OMEGA]
     return sorted({c.full for c in cells if c.full})
 
 
@@ -117,7 +117,9 @@ def test_cores_frequencies_in_the_table_are_those_of_the_exact_beam() -> None:
 
 
 def test_the_papers_own_discretisation_in_the_table_rounds_to_the_printed_digits() -> None:
-    cells = [c for c in results.read(readme.ROWS).cells if (c.case, c.omega, c.role) == (CASE, OMEGA, "discretisation")]
+    cells = [
+        c for c in results_file.read(readme.ROWS).cells if (c.case, c.omega, c.role) == (CASE, OMEGA, "discretisation")
+    ]
     edgewise = [c.value for c in cells if c.family == "edgewise"]
     assert [f"{f:.4g}" for f in sorted(f for f in edgewise if f)] == ["11.71", "70.37", "189.7"]
     blade = library.load(CASE).variants[0].blade

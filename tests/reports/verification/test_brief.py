@@ -7,7 +7,8 @@ from pathlib import Path
 
 import pytest
 
-from southwell.cases.judge.results import RESULTS, Origin, Run, Setting, write
+from southwell.cases.judge.results import Origin, Run, Setting
+from southwell.cases.store.results_file import RESULTS, write
 from southwell.reports.documents import pdf
 from southwell.reports.verification import brief
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Cell, Run, Verdict
+from southwell.cases.store import results_file
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import Description
 from southwell.reports.cli import app as cli
@@ -94,7 +94,7 @@ def test_a_code_without_cells_says_so() -> None:
 
 
 def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    results.write(tmp_path / arguments.RESULTS, RUN)
+    results_file.write(tmp_path / arguments.RESULTS, RUN)
     with pytest.raises(SystemExit) as ended:
         cli.main(["codes", "--pages", str(tmp_path)])
     assert ended.value.code == 0

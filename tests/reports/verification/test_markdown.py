@@ -9,7 +9,8 @@ from typing import Any
 import pytest
 from markdown_it import MarkdownIt
 
-from southwell.cases.judge.results import Cell, Control, Origin, Run, Setting, read, write
+from southwell.cases.judge.results import Cell, Control, Origin, Run, Setting
+from southwell.cases.store.results_file import read, write
 from southwell.reports.documents import document, html, print_nodes
 from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain

@@ -9,6 +9,7 @@ import pytest
 from southwell.cases.judge import checks, results
 from southwell.cases.judge.results import Planned, Run
 from southwell.cases.regression import gate, history
+from southwell.cases.store import results_file
 from southwell.reports.ci import gate_text, junit
 from southwell.reports.dashboard import data
 from southwell.reports.shared import summary
@@ -113,8 +114,8 @@ def test_only_measured_data_are_measured(tmp_path: Path) -> None:
         with pytest.raises(checks.RowError):
             checks.check(cell)
     path = tmp_path / "results.jsonl"
-    results.write(path, replace(WITH, plan=(Planned("beam", "rig", 0, 0),)))
-    assert results.read(path).cells == WITH.cells
+    results_file.write(path, replace(WITH, plan=(Planned("beam", "rig", 0, 0),)))
+    assert results_file.read(path).cells == WITH.cells
 
 
 def test_points_lie_over_the_lines_and_bend_none_of_them() -> None:

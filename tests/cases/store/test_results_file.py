@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from southwell.cases.input import atomic
-from southwell.cases.judge import results
 from southwell.cases.judge.results import Planned
+from southwell.cases.store import results_file
 
 from ...support.samples import SPEEDS, empty
 from ...support.samples import run as sample
@@ -19,12 +19,12 @@ WHOLE = replace(sample(), plan=tuple(Planned("beam", code, len(SPEEDS), 4) for c
 
 @pytest.fixture
 def path(tmp_path: Path) -> Path:
-    results.write(tmp_path / "results.jsonl", WHOLE)
+    results_file.write(tmp_path / "results.jsonl", WHOLE)
     return tmp_path / "results.jsonl"
 
 
 def test_a_whole_one_is_complete(path: Path) -> None:
-    assert results.read(path) == WHOLE
+    assert results_file.read(path) == WHOLE
     first, *_, last = path.read_text().splitlines()
     assert first.startswith('{"kind":"plan"')
     assert last.startswith('{"kind":"end"')
@@ -34,9 +34,9 @@ def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
     content = path.read_bytes()
     for size in range(0, len(content), 997):
         path.write_bytes(content[:size])
-        assert results.read(path).unfinished, size
+        assert results_file.read(path).unfinished, size
     path.write_bytes(content[:-1])
-    assert results.read(path).unfinished
+    assert results_file.read(path).unfinished
 
 
 @pytest.mark.parametrize(
@@ -52,20 +52,20 @@ def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
 )
 def test_what_is_missing_is_said(path: Path, change: Callable[[list[str]], list[str]], phrase: str) -> None:
     path.write_text("".join(change(path.read_text().splitlines(keepends=True))))
-    assert phrase in results.read(path).unfinished
+    assert phrase in results_file.read(path).unfinished
 
 
 def test_a_column_of_the_plan_without_its_cells_is_a_gap(tmp_path: Path) -> None:
     more = replace(WHOLE, plan=(*WHOLE.plan, Planned("beam", "epsilon", 1, 4)))
-    assert results.gaps(more) == "cells of beam × epsilon are missing, of 4 planned"
+    assert results_file.gaps(more) == "cells of beam × epsilon are missing, of 4 planned"
     less = replace(WHOLE, cells=tuple(c for c in WHOLE.cells if (c.code, c.omega, c.mode) != ("beta", 20.0, 3)))
-    assert "beam × beta" in results.gaps(less)
+    assert "beam × beta" in results_file.gaps(less)
     slower = replace(WHOLE, cells=tuple(c for c in WHOLE.cells if (c.code, c.omega) != ("beta", 20.0)))
-    assert "beam × beta" in results.gaps(slower)
+    assert "beam × beta" in results_file.gaps(slower)
     excused = replace(slower, cells=(*slower.cells, empty("inconclusive", "crashed", code="beta", omega=20.0)))
-    assert results.gaps(excused) == ""
+    assert results_file.gaps(excused) == ""
     with pytest.raises(ValueError, match="not written: cells of beam × beta"):
-        results.write(tmp_path / "results.jsonl", less)
+        results_file.write(tmp_path / "results.jsonl", less)
     assert not list(tmp_path.iterdir())
 
 
