@@ -7,7 +7,6 @@ than the target, or no property, is *without effect here*.
 
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 
 import numpy as np
 
@@ -16,7 +15,6 @@ from ...core.space.inertia import transformed
 from ...core.space.spatial import pose
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Limits
-from .. import data
 from ..diagnosis import blade_errors as errors
 from ..judge.results import Cell, Control
 from ..judge.verdict import unsigned
@@ -54,8 +52,7 @@ class _Witnessed(BladeSubject):
 
 def is_users(subject: Subject) -> bool:
     """Whether a subject is a blade that does not come with the package."""
-    package = Path(data.__file__ or "").parent
-    return isinstance(subject, BladeSubject) and package not in Path(subject.path).parents
+    return isinstance(subject, BladeSubject) and subject.users
 
 
 def witnesses(cells: Iterable[Cell], subject: Subject) -> tuple[str, ...]:

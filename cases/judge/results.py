@@ -213,16 +213,17 @@ class Setting:
 
 @dataclass(frozen=True)
 class PropertyCheck:
-    """One property of a blade, or of the model that a code assembles of it, against a second reading of the blade's file.
+    """One property of a blade: in a second reading of its file, in the model of a code, or in another description of it.
 
     Attributes:
         case: as in ``Cell``.
         code: the second reader, or the code whose model it is.
         version: its version.
-        quantity: ``reading`` or ``fingerprint``.
-        part: the property: ``edgewise stiffness``, ``mass``; empty if nothing is compared.
-        value: in Southwell's reading, or in the code's model; None if it is infinite.
-        reference: in the second reading, or by quadrature of its stations; None if it is infinite.
+        quantity: ``reading``, ``fingerprint`` (of a code's model), or ``invariance`` (another description of the blade).
+        part: the property: ``edgewise stiffness``, ``mass``, ``stations split``; empty if nothing is compared.
+        value: in Southwell's reading, in the code's model, or the frequency of the mode that changes most; None if infinite.
+        reference: in the second reading, by quadrature of its stations, or the frequency of the blade as given; None if
+            infinite.
         unit: of both.
         difference: relative; None if it is infinite, or nothing is compared.
         target: relative.
@@ -233,7 +234,7 @@ class PropertyCheck:
     case: str
     code: str
     version: str
-    quantity: Literal["reading", "fingerprint"]
+    quantity: Literal["reading", "fingerprint", "invariance"]
     part: str
     value: float | None
     reference: float | None
@@ -277,7 +278,7 @@ class Run:
         origins: origin of the answers of each column.
         diagnoses: why columns differ from core.
         plan: every planned column.
-        property_checks: second readings, and fingerprints of the codes' models.
+        property_checks: second readings, fingerprints of the codes' models, and invariances.
         unfinished: one sentence on what is missing; empty if the run is complete.
     """
 

@@ -4,13 +4,16 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
+from pathlib import Path
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
+from .. import data
 from ..input.schema import Case, Variant
-from ..judge.results import BudgetEntry, Setting
+from ..judge.results import BudgetEntry, PropertyCheck, Setting
 from ..solve import error_budget, properties
+from ..solve.invariances import Invariances
 from ..solve.reference import References, references
 from . import user_columns
 from .blade_columns import columns
@@ -36,6 +39,12 @@ class BladeSubject:
     def path(self) -> str:
         """See ``Subject``."""
         return self.case.path
+
+    @property
+    def users(self) -> bool:
+        """Whether the blade does not come with the package."""
+        package = Path(data.__file__ or "").parent
+        return package not in Path(self.path).parents
 
     @property
     def points(self) -> tuple[float, ...]:
@@ -80,7 +89,11 @@ class BladeSubject:
         """See ``Subject``."""
         rows, stations = properties.of_reading(self.name, self.variant.file, self.blade)
         rows += properties.of_core(self.name, self.blade, stations, version("southwell"))
-        return PropertyChecks(rows, properties.weighings(self.name, self.blade, stations, codes, limits))
+        tasks: list[Callable[[], list[PropertyCheck]]] = []
+        tasks += properties.weighings(self.name, self.blade, stations, codes, limits)
+        if self.users:
+            tasks.append(Invariances(self.name, self.blade, max(self.points), self.cells))
+        return PropertyChecks(rows, tasks)
 
     def error_budget(self) -> Callable[[], list[BudgetEntry]]:
         """See ``Subject``."""

@@ -18,7 +18,7 @@ from .user_results import UserResults
 
 @dataclass(frozen=True)
 class PropertyChecks:
-    """What is known of a subject's second reading, and the tasks that weigh the models of codes."""
+    """What is known of a subject's second reading, and the tasks that weigh the models of codes and describe it otherwise."""
 
     rows: Sequence[PropertyCheck] = ()
     tasks: Sequence[Callable[[], list[PropertyCheck]]] = ()
@@ -85,7 +85,7 @@ class Subject(Protocol):
         ...
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
-        """The second reading of its file, and the tasks that weigh the models of codes; arguments as for ``columns``."""
+        """The second reading of its file, and the tasks of all other checks of its properties; arguments as for ``columns``."""
         ...
 
     def error_budget(self) -> Callable[[], list[BudgetEntry]] | None:

@@ -50,7 +50,7 @@ def weigh(blade: Mounted, tip: Array, start: float = 0.0, rotary: bool = True) -
     """
     s, weight = _points(blade.stations.s, start)
     bodies = np.concatenate([weight[:, None, None] * linear(blade.stations.s, blade.stations.mass, s), tip[None]])
-    place, axes = _frames(blade, np.append(s, blade.stations.s[-1]))
+    place, axes = placed(blade, np.append(s, blade.stations.s[-1]))
     return _sum(bodies, axes, place, rotary)
 
 
@@ -60,7 +60,7 @@ def bend(blade: Mounted) -> tuple[float, float, float]:
     The axes are those of the hub. The virtual work of a section is Bᵀ C B with the strains B due to a unit load at the tip.
     """
     s, weight = _points(blade.stations.s, 0.0)
-    place, axes = _frames(blade, np.append(s, blade.stations.s[-1]))
+    place, axes = placed(blade, np.append(s, blade.stations.s[-1]))
     stiffness = blade.stations.stiffness
     soft = np.flatnonzero(np.isfinite(np.diagonal(stiffness, axis1=1, axis2=2)).all(axis=0))
     compliance = np.linalg.inv(linear(blade.stations.s, stiffness[:, soft[:, None], soft], s))
@@ -88,7 +88,7 @@ def linear(stations: Array, values: Array, s: Array) -> Array:
     return values[k] + t * (values[k + 1] - values[k])
 
 
-def _frames(blade: Mounted, s: Array) -> tuple[Array, Array]:
+def placed(blade: Mounted, s: Array) -> tuple[Array, Array]:
     """Positions (k, 3) from the hub's centre and axes (k, 3, 3) of sections, in the hub's axes."""
     place, tangent = _curve(blade.stations, blade.kinks, s)
     across = np.cross([1.0, 0.0, 0.0], tangent)

@@ -1,9 +1,9 @@
-"""The second reading of a blade's file and the mass and inertia of the codes' models, in words and tables."""
+"""The second reading of a blade's file, the codes' models and other descriptions of the blade, in words and tables."""
 
 from collections.abc import Iterable
 
 from ...cases.judge.results import PropertyCheck, Run, Verdict
-from ...cases.judge.verdict import percent
+from ...cases.judge.verdict import percent, unsigned
 from ..shared.summary import SYMBOL
 
 STATED: tuple[Verdict, ...] = ("fail", "inconclusive")
@@ -11,7 +11,7 @@ STATED: tuple[Verdict, ...] = ("fail", "inconclusive")
 
 
 def contradictions(run: Run) -> list[str]:
-    """What second readings and models contradict, in the words of the verdict; empty if nothing."""
+    """What second readings, models and other descriptions contradict, in the words of the verdict; empty if nothing."""
     out = []
     readings = [c for c in run.property_checks if c.quantity == "reading" and c.verdict == "fail"]
     if readings:
@@ -22,6 +22,10 @@ def contradictions(run: Run) -> list[str]:
     models = _codes(c for c in run.property_checks if c.quantity == "fingerprint" and c.verdict == "fail")
     if models:
         out.append(f"the model of {', '.join(models)} differs from the stations of the blade")
+    changed = [c for c in run.property_checks if c.quantity == "invariance" and c.verdict == "fail"]
+    if changed:
+        n = len(changed)
+        out.append(f"frequencies change in {n} other description{'s' * (n != 1)} of the same blade")
     return out
 
 
@@ -41,11 +45,25 @@ def lines(run: Run) -> list[str]:
     for reader, blades in agreeing.items():
         what = blades[0] if len(blades) == 1 else f"properties of each of {len(blades)} blades"
         out.append(f"Second reading: {reader} reads the same {what}.")
-    return out
+    return out + _unchanged(run)
+
+
+def _unchanged(run: Run) -> list[str]:
+    """One line on the other descriptions of blades whose frequencies are all the same; empty if there are none."""
+    checks = [c for c in run.property_checks if c.quantity == "invariance"]
+    solved = [c for c in checks if c.verdict == "pass"]
+    if not solved or any(c.verdict in STATED for c in checks):
+        return []
+    largest = max(abs(c.difference or 0.0) for c in solved)
+    blades = len({c.case for c in checks})
+    of = solved[0].case if blades == 1 else f"{blades} blades"
+    return [f"Invariances: frequencies of {of} are equal in {len(solved)} other descriptions, to {unsigned(largest)}."]
 
 
 def _what(check: PropertyCheck) -> str:
-    return "Second reading" if check.quantity == "reading" else f"Model of {check.code}"
+    return {"reading": "Second reading", "fingerprint": f"Model of {check.code}", "invariance": "Invariance"}[
+        check.quantity
+    ]
 
 
 def readings(run: Run, case: str) -> list[dict[str, str]]:
@@ -58,6 +76,19 @@ def readings(run: Run, case: str) -> list[dict[str, str]]:
         }
         for c in run.property_checks
         if c.case == case and c.quantity == "reading"
+    ]
+
+
+def invariances(run: Run, case: str) -> list[dict[str, str]]:
+    """One row for each other description of the blade: the largest change of a frequency, and its uncertainty."""
+    return [
+        {
+            "description": c.part,
+            "largest change of a frequency": "" if c.difference is None else f"{_size(c)} ± {unsigned(c.target)}",
+            "verdict": f"{SYMBOL[c.verdict]} {c.reason or c.verdict}",
+        }
+        for c in run.property_checks
+        if c.case == case and c.quantity == "invariance"
     ]
 
 

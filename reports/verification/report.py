@@ -204,6 +204,8 @@ class Section:
     error_budget_at: str
     readings: str
     models: str
+    invariances: str
+    fastest: str
 
 
 def section(run: Run, case: str, figures: list[str]) -> Section:
@@ -237,4 +239,6 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         error_budget_at=error_budget.heading(run, case, unit),
         readings=_plainly(properties.readings(run, case)),
         models=_plainly(properties.models(run, case)),
+        invariances=_plainly(properties.invariances(run, case)),
+        fastest=unit.at(max(speeds)) if speeds else "the highest speed",
     )

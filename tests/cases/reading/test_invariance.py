@@ -1,0 +1,163 @@
+"""A blade has the same frequencies in every description of it; a mistake of a convention is named."""
+
+from collections.abc import Callable
+from dataclasses import replace
+from functools import partial
+from typing import Any
+
+import numpy as np
+import pytest
+
+from southwell.cases.input import library
+from southwell.cases.judge.results import Cell, PropertyCheck, Run
+from southwell.cases.plan.blade import blades
+from southwell.cases.reading import invariance
+from southwell.cases.solve.invariances import Invariances
+from southwell.core.blade import Blade, section_mass, section_stiffness
+from southwell.core.element import discretize, sections
+from southwell.core.space.inertia import transformed
+from southwell.core.space.spatial import pose
+from southwell.core.spectrum import refinement
+from southwell.reports.shared import summary
+from southwell.reports.shared.statuses import FAILED
+from southwell.reports.verification import evidence, properties
+
+S = np.linspace(0.0, 10.0, 5)
+TIP = transformed(np.diag([20.0, 20.0, 20.0, 3.0, 2.0, 4.0]), pose(np.eye(3), np.array([0.0, 0.3, 0.1])))
+OMEGA = 6.0
+
+
+def blade(**changes: Any) -> Blade:
+    """Twisted, prebent, swept, with a tip body and couplings: no sign is without effect."""
+    stiffness = section_stiffness(1e8, 2e5, np.linspace(4e5, 1e5, 5), np.linspace(9e5, 3e5, 5), 4e7, 3e7)
+    stiffness[:, 3, 4] = stiffness[:, 4, 3] = 4e4
+    mass = transformed(section_mass(np.linspace(12.0, 6.0, 5), 0.05, 0.3), pose(np.eye(3), np.array([0.0, 0.05, 0.02])))
+    z, y = 0.02 * S**2 / 10.0, -0.015 * S**2 / 10.0
+    slope = np.gradient(z, S, edge_order=2) ** 2 + np.gradient(y, S, edge_order=2) ** 2
+    x = S - np.concatenate([[0.0], np.cumsum(np.diff(S) * 0.5 * 0.5 * (slope[1:] + slope[:-1]))])
+    right = Blade(
+        "wing", S, stiffness, mass, np.linspace(0.3, 0.0, 5), 1.5, np.stack([x, y, z], axis=1), 0.05, 0.03, TIP
+    )
+    return replace(right, **changes)
+
+
+def checked(of: Blade) -> dict[str, PropertyCheck]:
+    return {row.part: row for row in Invariances("wing", of, OMEGA, 3)()}
+
+
+def test_all_descriptions_have_the_same_frequencies() -> None:
+    rows = checked(blade())
+    assert list(rows) == [i.name for i in invariance.INVARIANCES]
+    assert {row.verdict for row in rows.values()} == {"pass"}
+    assert max(abs(row.difference or 0.0) for row in rows.values()) < 1e-7
+
+
+def test_a_hinged_root_turns_with_its_blade() -> None:
+    rows = checked(blade(root=np.array([np.inf, np.inf, np.inf, np.inf, 0.0, np.inf]), tip_mass=np.zeros((6, 6))))
+    assert rows["pitch stated as twist"].reason == "the root is not clamped: its hinge turns with the pitch"
+    assert {r.verdict for r in rows.values()} == {"pass", "not applicable"}
+
+
+def test_rigid_strains_are_stiff_in_both_descriptions() -> None:
+    stiffness = section_stiffness(np.inf, np.inf, np.linspace(4e5, 1e5, 5), np.linspace(9e5, 3e5, 5))
+    straight = blade(stiffness=stiffness, curve=np.zeros((0, 3)))
+    assert {r.verdict for r in checked(straight).values()} == {"pass"}
+
+
+def _tip_in_blade_axes(right: Any) -> Any:
+    def wrong(of: Blade, *args: Any, **kwargs: Any) -> Any:
+        turned = invariance._turned(of.twist[-1])
+        return right(replace(of, tip_mass=turned @ of.tip_mass @ turned.T), *args, **kwargs)
+
+    return wrong
+
+
+def _not_coned(right: Any) -> Any:
+    def wrong(of: Blade) -> Any:
+        out = right(of)
+        out[:3, 3] = [of.hub_radius, 0.0, 0.0]
+        return out
+
+    return wrong
+
+
+def _altered(**fields: Callable[[Blade], Any]) -> Any:
+    def make(right: Any) -> Any:
+        return lambda of, *args, **kwargs: right(
+            replace(of, **{name: value(of) for name, value in fields.items()}), *args, **kwargs
+        )
+
+    return make
+
+
+def _one_sign(i: int, j: int) -> Any:
+    """An entry of the sections' inertia loses its sign."""
+    entry = np.zeros((6, 6), dtype=bool)
+    entry[i, j] = entry[j, i] = True
+    return lambda right: lambda of, s: np.where(entry, np.abs(right(of, s)), right(of, s))
+
+
+MISTAKES = {
+    "the tip body is given in the blade's axes": ((discretize, "discretize", _tip_in_blade_axes), "section axes turned"),
+    "the hub radius is not coned": (
+        (sections, "root", _not_coned),
+        "precone stated by the curve",
+    ),
+    "the pitch has the opposite sense": (
+        (sections, "root", _altered(pitch=lambda b: -b.pitch)), "pitch stated as twist",
+    ),
+    "the precone has the opposite sense": (
+        (sections, "root", _altered(precone=lambda b: -b.precone)), "precone stated by the curve",
+    ),
+    "the twist has the opposite sense": (
+        (sections, "twist_at", lambda right: lambda of, s: -right(of, s)), "section axes turned",
+    ),
+    "the twist is that of the station before": (
+        (sections, "twist_at", lambda right: lambda of, s: right(of, np.asarray(s) - np.diff(of.stations).min())),
+        "stations split",
+    ),
+    "the edgewise offset of mass has one sign": (
+        (discretize, "mass_at", _one_sign(0, 5)), "mirror image with reversed rotation",
+    ),
+    "the flapwise offset of mass has one sign": (
+        (discretize, "mass_at", _one_sign(0, 4)), "mirror image in the rotor's plane",
+    ),
+}  # fmt: skip
+
+
+@pytest.mark.parametrize("name", MISTAKES)
+def test_a_mistake_of_a_convention_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    (owner, attribute, make), first = MISTAKES[name]
+    right = getattr(owner, attribute)
+    monkeypatch.setattr(owner, attribute, make(right))
+    if attribute == "discretize":
+        monkeypatch.setattr(refinement, attribute, make(right))
+    kind = next(i for i in invariance.INVARIANCES if i.name == first)
+    row = Invariances("wing", blade(), OMEGA, 2)._row(kind, [])
+    assert row.verdict == "fail"
+    assert row.reason.startswith(f"{first}: mode ")
+    assert row.reason.endswith(f": wrong: {kind.convention}")
+
+
+def test_only_blades_of_users_are_described_otherwise() -> None:
+    (subject,) = blades(library.load("pretwisted-beam"))
+    assert not subject.users
+    assert replace(subject, case=replace(subject.case, path="/home/me/blade.toml")).users
+
+
+def test_a_change_ends_a_run_with_status_1() -> None:
+    cell = Cell(
+        *("wing", 1.0, 1, "flapwise", "a-code", "1", "code", 5.0, 5.0, 0.0, 1e-9, 1e-3, "pass"),
+        shares="nothing",
+        ordinal=1,
+    )
+    row = partial(PropertyCheck, "wing", "core", "1", "invariance")
+    wrong = row("stations split", 5.1, 5.0, "rad/s", 0.02, 1e-8, "fail", "stations split: mode 1 changes by +2.00 %")
+    run = Run((cell,), property_checks=(wrong,))
+    assert summary.status(run) == FAILED
+    assert evidence.verdict(run) == "No: frequencies change in 1 other description of the same blade."
+    assert properties.lines(run) == ["Invariance: stations split: mode 1 changes by +2.00 % (wing)."]
+    right = Run((cell,), property_checks=(replace(wrong, difference=1e-9, verdict="pass", reason=""),))
+    assert properties.lines(right) == [
+        "Invariances: frequencies of wing are equal in 1 other descriptions, to 1.0e-07 %."
+    ]
