@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from .core.blade import Blade, BladeError, section_mass, section_stiffness, uniform_blade
     from .core.effects import Effects
     from .core.modes import Modes
-    from .reports.notebook import campbell, modes, read, verify
+    from .reports.notebook import campbell, modes, read, root_loads, verify
 
     __version__: str
 
@@ -38,6 +38,7 @@ _WHERE = {
     "diagnose": "cases.diagnosis.diagnose",
     "modes": "reports.notebook",
     "read": "reports.notebook",
+    "root_loads": "reports.notebook",
     "verify": "reports.notebook",
 }
 
@@ -52,6 +53,7 @@ __all__ = [
     "modes",
     "multibody",
     "read",
+    "root_loads",
     "section_mass",
     "section_stiffness",
     "uniform_blade",

@@ -66,14 +66,14 @@ def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None
         state = balance(mesh, omega, gravity, effects, near if guess is None else guess)
     except SteadyStateError as error:
         if pencil.has_free_motion(pencil.linearize(mesh, pencil.undeformed(mesh), omega, gravity, effects)):
-            raise _free_root(omega) from error
+            raise free_root(omega) from error
         raise
     strain = steady.largest_strain(mesh, state.shape)
     try:
         lowest, basis = _lowest(state.pencil, options.count, start.basis)
     except (UnstableError, EigensolverError) as error:
         if pencil.has_free_motion(state.pencil):
-            raise _free_root(omega) from error
+            raise free_root(omega) from error
         if isinstance(error, UnstableError) and strain > LARGEST_STRAIN:
             raise UnstableError(
                 f"omega: {omega:.6g} rad/s: the steady state is unstable, with an axial or shear strain of {strain:.0%}: "
@@ -114,7 +114,8 @@ def rounding(mesh: Mesh, solved: Solved, options: Options) -> Array:
     return accuracy.FLOOR + change / solved.modes.frequencies
 
 
-def _free_root(omega: float) -> UnstableError:
+def free_root(omega: float) -> UnstableError:
+    """The error of a blade whose root is free in a direction without stiffness at this speed (rad/s)."""
     turning = "" if omega else "; rotation stiffens a flap hinge: give speeds above 0"
     return UnstableError(
         f"omega: {omega:.6g} rad/s: a free direction of the root has no stiffness: add a spring or clamp it{turning}"

@@ -10,11 +10,13 @@ from cyclopts import Parameter, Token
 from cyclopts.validators import Number
 
 from ...cases.input.errors import CaseError
+from ...cases.input.schema import speed_range
 from ...cases.input.writing import writable
 from ...cases.judge.results import Run
 from ...cases.run.cluster import SLURM
 from ...cases.store import results_file, unfinished
 from ...cases.store.results_file import RESULTS
+from ..shared.units import RAD_S, RPM, Units
 from .errors import IncompleteError, UsageError
 
 
@@ -111,3 +113,20 @@ def cluster_workers(workers: int | None, scheduler: str | None) -> int | None:
     if scheduler != SLURM and workers is not None:
         raise UsageError(f"--workers {workers}: the workers of {scheduler} are used: leave it out")
     return workers
+
+
+def given_speeds(omega: str | None, rpm: str | None) -> tuple[Sequence[float] | None, Units | None]:
+    """Rotor speeds in rad/s from ``--omega`` or ``--rpm``, and their units; None if neither is given.
+
+    Raises:
+        UsageError: if both are given, or the text is not a range of speeds.
+    """
+    if omega is not None and rpm is not None:
+        raise UsageError(f"--omega {omega} and --rpm {rpm}: the speed is given twice: give one of them")
+    if omega is None and rpm is None:
+        return None, None
+    option, text, units = ("--omega", omega, RAD_S) if omega is not None else ("--rpm", rpm, RPM)
+    try:
+        return (speed_range(text or "") / units.speeds).tolist(), units
+    except ValueError as error:
+        raise UsageError(f"{option}: {error}") from error

@@ -3,7 +3,7 @@
 Takes a blade; returns results with a table view, pandas tables and matplotlib axes.
 """
 
-from .api import campbell, modes, read, verify
+from .api import campbell, modes, read, root_loads, verify
 from .results import CampbellResult, ModesResult, VerifyResult
 
-__all__ = ["CampbellResult", "ModesResult", "VerifyResult", "campbell", "modes", "read", "verify"]
+__all__ = ["CampbellResult", "ModesResult", "VerifyResult", "campbell", "modes", "read", "root_loads", "verify"]

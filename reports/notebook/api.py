@@ -1,4 +1,4 @@
-"""``southwell.read``, ``.modes``, ``.campbell`` and ``.verify``."""
+"""``southwell.read``, ``.modes``, ``.root_loads``, ``.campbell`` and ``.verify``."""
 
 from collections.abc import Sequence
 from contextlib import ExitStack
@@ -24,6 +24,8 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
+from ...core.root_loads import RootLoads
+from ...core.root_loads import root_loads as loads_at_root
 from ...references.protocol.process import Limits
 from ..shared.units import RAD_S, RPM, Units
 from .results import CampbellResult, ModesResult, VerifyResult
@@ -145,6 +147,42 @@ def modes(
         allow_large_strain=allow_large_strain,
     )
     return ModesResult(**vars(result), blade=blade, units=units)
+
+
+def root_loads(
+    blade: Blade,
+    omega: float | None = None,
+    *,
+    rpm: float | None = None,
+    accuracy: float = 1e-6,
+    gravity: Array = solve.NO_GRAVITY,
+    load: Array | None = None,
+    allow_large_strain: bool = False,
+) -> RootLoads:
+    """Compute the steady force and moment of a blade on its hub at one rotor speed, as ``southwell show --steady``.
+
+    Args:
+        blade: the blade.
+        omega: rotor speed, rad/s.
+        rpm: rotor speed in rpm, instead.
+        accuracy: largest relative uncertainty of the force and of the moment.
+        gravity: (3,) m/s², in hub axes, at the azimuth of interest; its loads turn with the blade.
+        load: (n, 3) steady force per length at the blade's stations, N/m, in hub axes.
+        allow_large_strain: accept steady strains above 20 %.
+
+    Raises:
+        CaseError: no speed, or two.
+        ValueError, SteadyStateError: as ``core.root_loads.root_loads``.
+    """
+    given, units = _given(rpm, omega)
+    return loads_at_root(
+        blade,
+        given / units.speeds,
+        accuracy=accuracy,
+        gravity=gravity,
+        load=load,
+        allow_large_strain=allow_large_strain,
+    )
 
 
 def campbell(

@@ -13,16 +13,15 @@ from ....cases.campbell.sweep import Named
 from ....cases.campbell.tracked import TrackedMode, tracked
 from ....cases.input import library
 from ....cases.input.changes import parse
-from ....cases.input.schema import speed_range
 from ...campbell import changes as changes_table
 from ...campbell import tables
 from ...shared import not_used
 from ...shared.certain import NUMERICAL, remarks
 from ...shared.console import output
 from ...shared.statuses import PASSED
-from ...shared.units import RAD_S, RPM, Units
+from ...shared.units import Units
 from ...verification import terminal
-from ..arguments import Accuracy, Changes, Elements, NumberOfModes
+from ..arguments import Accuracy, Changes, Elements, NumberOfModes, given_speeds
 from ..errors import UsageError
 from ..mounting import Mounting
 from . import mechanism_text as answer
@@ -74,7 +73,7 @@ def modes(
     against
         Another blade; prints the change of every frequency.
     """
-    speeds, units = _speeds(omega, rpm)
+    speeds, units = given_speeds(omega, rpm)
     rows: list[dict[str, object]] = []
     mount, given = (mounting or Mounting()).mount(), [parse(text) for text in changes]
     if json and against:
@@ -183,15 +182,3 @@ def _tidy(case: str, row: Named, label: str) -> dict[str, object]:
         "relative_uncertainty": row.uncertainty if np.isfinite(row.uncertainty) else None,
         "steady_strain": row.strain,
     }
-
-
-def _speeds(omega: str | None, rpm: str | None) -> tuple[Sequence[float] | None, Units | None]:
-    if omega is not None and rpm is not None:
-        raise UsageError(f"--omega {omega} and --rpm {rpm}: the speed is given twice: give one of them")
-    if omega is None and rpm is None:
-        return None, None
-    option, text, units = ("--omega", omega, RAD_S) if omega is not None else ("--rpm", rpm, RPM)
-    try:
-        return (speed_range(text or "") / units.speeds).tolist(), units
-    except ValueError as error:
-        raise UsageError(f"{option}: {error}") from error

@@ -1,6 +1,6 @@
 """``southwell show``: the properties of a blade as numbers and a figure, and how its file was read."""
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Annotated
 
@@ -13,13 +13,20 @@ from rich.markup import escape
 from rich.table import Table
 
 from ....cases.input import atomic
+from ....cases.input.errors import NO_STATE, unsteady
 from ....cases.input.properties import sections
 from ....cases.input.writing import writable
 from ....core.blade import Blade
+from ....core.root_loads import RootLoads, root_loads
+from ...campbell import root_loads as root_tables
 from ...campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
+from ...campbell.tables import terminal
 from ...shared import not_used
 from ...shared.console import output
 from ...shared.paths import file_name
+from ...shared.units import Units
+from ..arguments import given_speeds
+from ..errors import UsageError
 from ..mounting import Mounting
 from .subjects import subjects as find_subjects
 
@@ -32,6 +39,9 @@ def command(
     *,
     out: Annotated[Path | None, Parameter(name=["--out", "-o"])] = None,
     all: bool = False,
+    steady: bool = False,
+    rpm: str | None = None,
+    omega: str | None = None,
     mounting: Mounting | None = None,
 ) -> int:
     """Show the mass, sections and axes of a blade, and how its file was read.
@@ -43,23 +53,48 @@ def command(
     blade
         Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`).
     out
-        Output folder for a figure of the properties along the span (SVG, PNG) and a CSV table of all stations.
+        Output folder for a figure of the properties along the span (SVG, PNG) and CSV tables of all stations and loads.
     all
         Print all stations.
+    steady
+        Print the steady force and moment at the root at the speeds of --rpm or --omega, or of the case, in vacuo and without
+        gravity.
+    rpm
+        Rotor speeds in rpm: one, a range `first:last:step` or a list `0,5,10`.
+    omega
+        Rotor speeds in rad/s, in the same form.
     """
-    subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=False)
+    speeds, units = given_speeds(omega, rpm)
+    if speeds is not None and not steady:
+        raise UsageError("--steady: missing: show uses speeds for the loads at the root: add --steady")
+    subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=steady)
+    if steady and speeds is None and any(not subject.speeds for subject in subjects):
+        raise UsageError(f"--rpm: missing: {blade} does not define rotor speeds: give them, as in 0:15:5")
     console = output()
     for subject in subjects:
         console.print(summary(subject.blade, subject.about))
         not_used.show(subject.unused, console)
+        shown = units or subject.units
+        loads = list(_loads(subject.blade, speeds or subject.speeds, shown)) if steady else []
         for table in stations(subject.blade, None if all else ROWS):
             console.print(table)
+        if loads:
+            for sheet in root_tables.sheets(loads, shown):
+                console.print(terminal(sheet, console.width))
         if out is not None:
             folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
             with writable(f"--out {out}"):
-                written = write(subject.blade, folder)
+                written = write(subject.blade, folder, loads)
             console.print(f"{folder}: {', '.join(path.name for path in written)}", markup=False, soft_wrap=True)
     return 0
+
+
+def _loads(blade: Blade, speeds: Sequence[float], units: Units) -> Iterator[RootLoads]:
+    for omega in speeds:
+        try:
+            yield root_loads(blade, omega)
+        except NO_STATE as error:
+            raise unsteady(blade.name, omega, error, units.at) from error
 
 
 def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
@@ -96,8 +131,8 @@ def _table(values: Array, columns: Sequence[int]) -> Table:
     return table
 
 
-def write(blade: Blade, folder: Path) -> list[Path]:
-    """Write the figure (SVG, PNG) and the table of all stations (CSV); return the paths."""
+def write(blade: Blade, folder: Path, loads: Sequence[RootLoads] = ()) -> list[Path]:
+    """Write the figure (SVG, PNG), the table of all stations and that of the loads at the root (CSV); return the paths."""
     from ...campbell import span  # not at the top: the figures take half of the start-up time
 
     folder.mkdir(parents=True, exist_ok=True)
@@ -108,4 +143,8 @@ def write(blade: Blade, folder: Path) -> list[Path]:
     written = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
     lines = [",".join(COLUMNS + MORE), *written]
     atomic.write(table, "\n".join(lines) + "\n")
-    return [*span.write(blade, folder), table]
+    if not loads:
+        return [*span.write(blade, folder), table]
+    at_root = folder / root_tables.CSV
+    atomic.write(at_root, root_tables.table(loads))
+    return [*span.write(blade, folder), table, at_root]

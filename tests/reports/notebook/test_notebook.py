@@ -63,6 +63,12 @@ def test_python_and_the_command_take_the_same_names_and_give_the_same_numbers(
     assert set(margins["measure"]) == {"rad/s"}
 
 
+def test_root_loads_take_rpm_or_rad_s(blade: southwell.Blade) -> None:
+    in_rpm, in_rad = southwell.root_loads(blade, rpm=12.1), southwell.root_loads(blade, 12.1 * np.pi / 30)
+    np.testing.assert_allclose(in_rpm.force, in_rad.force, rtol=1e-12)
+    assert in_rpm.force[0] > 0
+
+
 def test_a_blade_has_a_short_text() -> None:
     """The cantilever of Park et al.; it used to print every array."""
     blade = southwell.uniform_blade("beam", 5.0, 0.5, EA=1e8, GJ=1e5, EI_y=1e5, EI_z=1e5, mass=3.0)

@@ -98,6 +98,28 @@ def test_figure_and_table_of_all_stations(capsys: pytest.CaptureFixture[str], tm
     np.testing.assert_allclose([float(r["mass axes [deg]"]) for r in rows], [0.0, -3.0, 0.0], atol=1e-9)
 
 
+def test_steady_loads_at_the_root(
+    capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Ω² times the first moment about the rotor's axis; the beam is stiff at this speed."""
+    monkeypatch.setattr(span, "write", lambda blade, folder: [])
+    path = tmp_path / "beam.toml"
+    path.write_text(BEAM)
+    status, out, _ = run(capsys, str(path), "--steady", "--rpm", "30,60", "--out", str(tmp_path))
+    force = (2 * np.pi) ** 2 * (1.2 * 6 * 3.3 + 2 * 6.3)
+    row = next(line.split() for line in out.splitlines() if line.strip().startswith("60 rpm"))
+    assert status == 0
+    assert float(row[2]) == pytest.approx(force, rel=1e-4)
+    assert row[3:] == ["0", "0", "0", "0", "0"]
+    with (tmp_path / "root-loads.csv").open(encoding="utf-8") as file:
+        assert float(list(csv.DictReader(file))[1]["Fx [N]"]) == pytest.approx(force, rel=1e-4)
+    status, _, err = run(capsys, str(path), "--steady", "--rpm", "0")
+    assert (status, err.count("\n")) == (2, 1)
+    assert "a free direction of the root has no stiffness" in err
+    assert "--steady: missing" in run(capsys, str(path), "--rpm", "60")[2]
+    assert "--rpm: missing" in run(capsys, str(path), "--steady")[2]
+
+
 def test_blades_of_a_case_each_have_a_folder(
     capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
