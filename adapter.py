@@ -12,6 +12,7 @@ from .core.blade import Blade, clamped, coupled, mass_at, sample, stiffness_at, 
 from .core.effects import Effects
 from .core.mechanism.description import Mechanism
 from .core.modes import STATIONS, Modes
+from .core.rotor.turbine import Turbine
 from .references.protocol.fingerprint import Fingerprint
 from .references.protocol.interface import (
     CORE,
@@ -21,6 +22,7 @@ from .references.protocol.interface import (
     MechanismAdapter,
     MechanismModes,
 )
+from .references.protocol.turbines import TurbineAdapter, TurbineModes
 
 __all__ = [
     "CORE",
@@ -35,6 +37,9 @@ __all__ = [
     "MechanismAdapter",
     "MechanismModes",
     "Modes",
+    "Turbine",
+    "TurbineAdapter",
+    "TurbineModes",
     "clamped",
     "coupled",
     "mass_at",

@@ -247,7 +247,7 @@ def rigid_rotor(turbine: Turbine, mesh: Mesh) -> Array:
     inertia = component.reduced(mesh, state, 1).M[-6:, -6:]
     out = turbine.hub.copy()
     for k in range(turbine.blades):
-        A = _turn(2.0 * np.pi * k / turbine.blades)[0]
+        A = turned_axes(2.0 * np.pi * k / turbine.blades)[0]
         out += A.T @ inertia @ A
     return out
 
@@ -267,7 +267,7 @@ def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple
     T, R = multiblade.transformation(psi, n), multiblade.rate(n)
     out = [np.zeros((n * r + 6, n * r + 6)) for _ in range(3)]
     for k in range(n):
-        turns = _turn(psi + 2.0 * np.pi * k / n)
+        turns = turned_axes(psi + 2.0 * np.pi * k / n)
         P = []
         for order, turn in enumerate(turns):
             part = np.zeros((r + 6, n * r + 6))
@@ -285,7 +285,7 @@ def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple
     return out[0], out[1], out[2]
 
 
-def _turn(psi: float) -> tuple[Array, Array, Array]:
+def turned_axes(psi: float) -> tuple[Array, Array, Array]:
     """A (6, 6), the twist ξ_H in axes turned by ψ about z, and its first and second derivatives."""
     c, s = np.cos(psi), np.sin(psi)
     parts = (

@@ -18,8 +18,7 @@ from ..modes import Modes
 from ..spectrum import eigen
 from ..threads import one_thread
 from ..tree.links import twists
-from ..tree.mode_shapes import mode_shapes
-from . import multiblade
+from . import multiblade, stations
 from .turbine import Assembled, Machine, assemble
 from .whirl import whirl
 
@@ -55,6 +54,7 @@ class TurbineModes:
         groups: (g,) names of the motions.
         shapes: (m, k) displacements of tower, shaft and blades by multi-blade coordinate, for tracking; the largest is 1.
         directions: (m,) whirl of the blades' motion, from −1, backward, to 1, forward.
+        motions: (m, 21 (1 + N), 4) motion of the stations of tower and blades, see ``stations``.
     """
 
     omega: float
@@ -66,6 +66,7 @@ class TurbineModes:
     groups: tuple[str, ...]
     shapes: Complex
     directions: Array
+    motions: Complex
 
 
 def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
@@ -106,6 +107,7 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         groups=labels,
         shapes=_shapes(a, vectors),
         directions=directions,
+        motions=stations.motions(made.turbine, a, vectors),
     )
 
 
@@ -135,9 +137,7 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
     )
     for part, beam, reduced, mesh, shape, words in parts:
         p = a.tower_links if part == "tower" else a.blade_links
-        nodes = twists(p, reduced.vectors)
-        both = np.stack([nodes, np.zeros_like(nodes)], axis=1).reshape(-1, *nodes.shape[1:])
-        modes = Modes(0.0, reduced.frequencies, mode_shapes(mesh, shape, both), mesh.elements)
+        modes = Modes(0.0, reduced.frequencies, stations.elastic(reduced, mesh, shape, p), mesh.elements)
         fractions = participation.participation(modes, beam)
         families = [words[int(row.argmax())] for row in fractions]
         seen: dict[str, int] = {}

@@ -73,9 +73,12 @@ LAYER = 10.0
 need at most twice the elements."""
 
 
-def hinge_segments(blade: Blade, elements: int, omega: float = 0.0) -> HingedSegments:
-    """A blade at ``omega`` (rad/s) as a tree of at least ``elements`` elements, after the root joint if not clamped."""
-    ends = _ends(blade, elements, omega)
+def hinge_segments(blade: Blade, elements: int, omega: float = 0.0, equal: bool = False) -> HingedSegments:
+    """A blade at ``omega`` (rad/s) as a tree of at least ``elements`` elements, after the root joint if not clamped.
+
+    With ``equal`` there are exactly as many, of equal length, whatever kinks the properties have: convergence is less regular.
+    """
+    ends = np.linspace(0.0, blade.length, elements + 1) if equal else _ends(blade, elements, omega)
     hinges = _hinges(blade, ends)
     position, axes = _frames(blade, hinges)
     soft = np.isfinite(np.diagonal(blade.stiffness[0]))
@@ -207,3 +210,11 @@ def _segments(blade: Blade, hinges: Array, position: Array, axes: Array) -> tupl
     mass, first, second = sums
     centre = first / mass[:, None, None]
     return mass, centre[:, [2, 0, 1], [1, 2, 0]], second + mass[:, None, None] * centre @ centre
+
+
+def root_segment(blade: Blade, start: float) -> tuple[Array, Array, Array]:
+    """Mass, centre (3,) and inertia about it (3, 3) of the part before the first hinge, in the hub's axes."""
+    at = np.array([0.0, start])
+    position, _ = _frames(blade, at)
+    mass, centre, inertia = _segments(blade, at, position, np.tile(np.eye(3), (2, 1, 1)))
+    return mass[0], position[0] + centre[0], inertia[0]

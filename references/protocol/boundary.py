@@ -17,6 +17,7 @@ from ...core.modes import STATIONS, Modes
 from .fingerprint import Fingerprint
 from .interface import DIGITS, MOTIONS, MechanismModes, Motion
 from .process import Failure, one_line
+from .turbines import TurbineModes
 from .wire import decode_complex, decode_modes
 
 T = TypeVar("T")
@@ -74,6 +75,7 @@ class Declared(Struct, frozen=True, forbid_unknown_fields=True):
     hint: TextLine
     blades: bool
     mechanisms: bool
+    turbines: bool
     independence: Origin | None
     distribution: TextLine
     version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
@@ -117,6 +119,13 @@ class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
     steady: list[float]
     values: _Complex
     shapes: _Complex
+    seconds: Seconds
+
+
+class _TurbineModes(Struct, frozen=True, forbid_unknown_fields=True):
+    values: _Complex
+    shapes: _Complex
+    elements: Elements
     seconds: Seconds
 
 
@@ -198,6 +207,23 @@ def mechanism_modes(data: Any) -> MechanismModes:
     return MechanismModes(tuple(answer.coordinates), np.array(answer.steady), values, shapes, answer.seconds)
 
 
+def turbine_modes(data: Any, count: int, stations: int) -> TurbineModes:
+    """Validate a turbine's modes, at most ``count``, of which each shape has this number of stations.
+
+    Raises:
+        NonsenseError: if the data are invalid.
+    """
+    answer = convert(data, _TurbineModes)
+    values, shapes = _array("values", answer.values, 1), _array("shapes", answer.shapes, 3)
+    m = len(values)
+    _keep(1 <= m <= count, f"values: {m} returned, {count} requested")
+    _keep(shapes.shape == (m, stations, 4), f"shapes: must be {m} of {stations} stations by 4 columns")
+    for name, numbers in (("values", values.view(float)), ("shapes", shapes.view(float))):
+        _finite(name, numbers)
+    _ascending("values, by modulus", np.abs(values) * (1.0 + 1e-9 * np.arange(m)))
+    return TurbineModes(values, shapes, answer.elements, answer.seconds)
+
+
 def declared(data: Any) -> Declared:
     """Validate the declarations of a code.
 
@@ -205,8 +231,11 @@ def declared(data: Any) -> Declared:
         NonsenseError: if the data are invalid.
     """
     declarations = convert(data, Declared)
-    _keep(declarations.blades or declarations.mechanisms, "the code solves neither blades nor mechanisms")
-    if declarations.blades:
+    _keep(
+        declarations.blades or declarations.mechanisms or declarations.turbines,
+        "the code solves no blades, mechanisms or turbines",
+    )
+    if declarations.blades or declarations.turbines:
         _keep(len(declarations.levels) > 0, "levels: (): give at least one refinement")
         _keep(np.all(np.diff(declarations.levels) > 0), f"levels: {declarations.levels}: not ascending")
     return declarations

@@ -22,6 +22,7 @@ from .boundary import NonsenseError
 from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, MechanismAdapter, Motion, Shares, shares
 from .process import Failure, Limits, converse, one_line, raised
 from .registry import UnknownCodeError
+from .turbines import TurbineAdapter
 from .wire import Reply, decode_blade, encode, failed, foreign_exception, serve
 
 TOGETHER = 2
@@ -33,13 +34,13 @@ ASKING = Limits(seconds=120.0)
 
 @dataclass(frozen=True)
 class Description:
-    """A code, as its adapter declares it (``interface.BladeAdapter``, ``interface.MechanismAdapter``).
+    """A code, as its adapter declares it (see ``interface`` and ``turbines``).
 
     Attributes:
         asked: the name or import path given to ``describe``; ``worker.answers`` accepts it too.
         name: as declared.
         title, effects, hint, levels, order, finest, motions, digits, bracket, independence, distribution: as declared.
-        blades, mechanisms: whether the code solves them.
+        blades, mechanisms, turbines: whether the code solves them.
         version: None if it is not installed.
         refused: for each blade, the reason why the code does not support it; None if it does, or if the reason is
             invalid (the worker that solves the blade reports that).
@@ -62,6 +63,7 @@ class Description:
     distribution: str = ""
     blades: bool = True
     mechanisms: bool = True
+    turbines: bool = False
     version: str | None = None
     refused: tuple[str | None, ...] = ()
     page: str = ""
@@ -155,10 +157,13 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
 
 BLADE_DECLARATIONS = ("levels", "order", "finest", "motions", "digits", "bracket")
 
+TURBINE_DECLARATIONS = ("levels", "order", "finest")
+
 
 def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
     """The declarations of a code as plain data; exceptions of the code propagate."""
-    solves, origin = isinstance(code, BladeAdapter), code.independence
+    solves, turbines, origin = isinstance(code, BladeAdapter), isinstance(code, TurbineAdapter), code.independence
+    refinement = BLADE_DECLARATIONS if solves else TURBINE_DECLARATIONS if turbines else ()
     facts = {
         "name": code.name,
         "title": code.title,
@@ -166,7 +171,8 @@ def _facts(code: Any, blades: Sequence[Blade]) -> Reply:
         "hint": code.hint,
         "blades": solves,
         "mechanisms": isinstance(code, MechanismAdapter),
-        **({name: getattr(code, name) for name in BLADE_DECLARATIONS} if solves else {}),
+        "turbines": turbines,
+        **{name: getattr(code, name) for name in refinement},
         "distribution": code.distribution,
         "independence": vars(origin) if isinstance(origin, Independence) else origin,
         "version": None,

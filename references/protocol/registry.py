@@ -13,6 +13,7 @@ from typing import Any, TypedDict
 
 from .interface import BladeAdapter, MechanismAdapter
 from .process import Failure, one_line, raised
+from .turbines import TurbineAdapter
 
 GROUP = "southwell.codes"
 """Entry-point group of codes, those of this package and those of others."""
@@ -99,7 +100,7 @@ def loaded(request: dict[str, Any]) -> Any:
 
 
 def code(name: str) -> Any:
-    """Import the code called ``name`` (as for ``locate``): a ``BladeAdapter``, a ``MechanismAdapter``, or both.
+    """Import the code called ``name`` (as for ``locate``), whose class is derived from one or several kinds of adapter.
 
     Raises:
         UnknownCodeError: if the name is unknown, or there is no code at the path.
@@ -117,8 +118,8 @@ def code(name: str) -> Any:
         message = f"module {module!r} has no attribute {attribute!r}"
         raise UnknownCodeError(f"code: {name!r} cannot be loaded from {path}: {message}: {ADVICE}")
     adapter = getattr(holder, attribute)
-    if not isinstance(adapter, BladeAdapter | MechanismAdapter):
-        bases = "southwell.references.protocol: interface.BladeAdapter or interface.MechanismAdapter"
+    if not isinstance(adapter, BladeAdapter | MechanismAdapter | TurbineAdapter):
+        bases = "southwell.references.protocol: interface.BladeAdapter, interface.MechanismAdapter or turbines.TurbineAdapter"
         raise UnknownCodeError(
             f"code: {path} is {type(adapter).__name__}, not an adapter: derive its class from {bases}"
         )

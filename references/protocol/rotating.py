@@ -8,7 +8,9 @@ sine coordinates, which are not used here. With a = e^{λt} both are seen from t
 from collections.abc import Callable, Sequence
 
 import numpy as np
+import scipy.linalg
 from numpy.typing import NDArray
+from scipy.sparse import linalg as spla
 
 from .interface import CodeError
 
@@ -22,6 +24,9 @@ AZIMUTHS = (0.0, 0.9, 2.3)
 CHANGE = 1e-7
 """Largest change with the azimuth, relative to the largest entry, that counts as rounding."""
 
+RIGID = 1e-2
+"""Modulus, relative to a typical frequency, below which a mode is the rotor that turns freely."""
+
 
 def modes(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequence[int]]) -> tuple[Complex, Complex]:
     """Eigenvalues (m,) with imaginary part ≥ 0, by modulus, and shapes (n, m) at the azimuth 0.
@@ -34,15 +39,7 @@ def modes(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequen
     Raises:
         CodeError: the transformed matrices change with the azimuth.
     """
-    first, *others = [_transformed(at(psi), omega, groups, psi) for psi in AZIMUTHS]
-    for other in others:
-        for power, (a, b) in zip((2, 1, 0), zip(first, other, strict=True), strict=True):
-            size = max(float(np.abs(part).max()) * abs(omega) ** p for p, part in zip((2, 1, 0), first, strict=True))
-            if float(np.abs(a - b).max()) * abs(omega) ** power > CHANGE * size:
-                raise CodeError(
-                    "periodic: the matrices change with the azimuth, also in Fourier coordinates of the blades"
-                )
-    M, C, K = first
+    M, C, K = _constant(at, omega, groups)
     n = len(M)
     lower = -np.linalg.solve(M, np.hstack([K, C]))
     eigenpairs = np.linalg.eig(np.vstack([np.hstack([np.zeros((n, n)), np.eye(n)]), lower]))
@@ -51,6 +48,67 @@ def modes(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequen
     order = order[values[order].imag >= -1e-12 * np.abs(values).max()]
     T, _ = _fourier(n, groups, 0.0)
     return values[order], T @ vectors[:n, order]
+
+
+def lowest(
+    at: Callable[[float], Matrices],
+    omega: float,
+    groups: Sequence[Sequence[int]],
+    count: int,
+    scale: float,
+    free: bool,
+) -> tuple[Complex, Complex]:
+    """The ``count`` lowest modes, as ``modes``, of many coordinates, some of which may be massless.
+
+    Args:
+        at, omega, groups: as for ``modes``.
+        count: number of modes.
+        scale: a typical frequency, rad/s.
+        free: whether the rotor turns freely; that motion is left out.
+
+    Raises:
+        CodeError: the transformed matrices change with the azimuth, or the iteration fails.
+    """
+    M, C, K = _constant(at, omega, groups)
+    n, shift = len(M), 0.1 * scale  # real: all modes are as far from it as their modulus says
+    factor = scipy.linalg.lu_factor(shift**2 * M + shift * C + K)
+
+    def inverse(state: Complex) -> Complex:
+        """(A − s B)⁻¹ B of the pencil A = [[0, 1], [−K, −C]], B = [[1, 0], [0, M]], applied to (x, λ x)."""
+        x, v = state[:n], state[n:]
+        out = -scipy.linalg.lu_solve(factor, M @ v + (C + shift * M) @ x)
+        return np.concatenate([out, x + shift * out])
+
+    operator = spla.LinearOperator((2 * n, 2 * n), matvec=inverse, dtype=complex)  # pyright: ignore[reportCallIssue]
+    asked = min(2 * (count + 2 + free), 2 * n - 2)
+    try:
+        start = np.random.default_rng(0).standard_normal(2 * n).astype(complex)
+        solution = spla.eigs(operator, k=asked, which="LM", v0=start, ncv=min(2 * n, 3 * asked))
+    except spla.ArpackError as error:
+        raise CodeError(f"eigenproblem: {error}: request fewer modes") from error
+    inverses, vectors = (np.asarray(a, np.complex128) for a in solution)
+    values = shift + 1.0 / inverses
+    keep = np.flatnonzero((values.imag > 0) & (np.abs(values) > (RIGID * scale if free else 0.0)))
+    keep = keep[np.argsort(np.abs(values[keep]), kind="stable")][:count]
+    T, _ = _fourier(n, groups, 0.0)
+    return values[keep], T @ vectors[:n, keep]
+
+
+def _constant(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequence[int]]) -> tuple[Complex, ...]:
+    """M, C, K (n, n) in Fourier coordinates of the blades.
+
+    Raises:
+        CodeError: they change with the azimuth.
+    """
+    first, *others = [_transformed(at(psi), omega, groups, psi) for psi in AZIMUTHS]
+    for other in others:
+        for power, (a, b) in zip((2, 1, 0), zip(first, other, strict=True), strict=True):
+            size = max(float(np.abs(part).max()) * abs(omega) ** p for p, part in zip((2, 1, 0), first, strict=True))
+            if float(np.abs(a - b).max()) * abs(omega) ** power > CHANGE * size:
+                raise CodeError(
+                    "periodic: the matrices change with the azimuth, also in Fourier coordinates of the blades"
+                )
+    return first
 
 
 def _transformed(matrices: Matrices, omega: float, groups: Sequence[Sequence[int]], psi: float) -> tuple[Complex, ...]:

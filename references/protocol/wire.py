@@ -10,7 +10,7 @@ import sys
 from base64 import b64decode, b64encode
 from collections.abc import Iterator
 from dataclasses import fields
-from typing import Any, TextIO
+from typing import TYPE_CHECKING, Any, TextIO
 
 import msgspec
 import numpy as np
@@ -23,13 +23,17 @@ from . import portable
 from .fingerprint import Fingerprint
 from .interface import MechanismModes
 from .process import raised
+from .turbines import TurbineModes
+
+if TYPE_CHECKING:
+    from ...core.rotor.turbine import Turbine
 
 Reply = dict[str, Any]
 
 COMPLEX = np.dtype("<c16")
 
 
-def encode(value: Blade | Modes | MechanismModes | Fingerprint) -> dict[str, Any]:
+def encode(value: Blade | Modes | MechanismModes | TurbineModes | Fingerprint) -> dict[str, Any]:
     """Encode as a dictionary of lists, numbers and strings, for ``json.dumps``."""
     return {f.name: _plain(getattr(value, f.name)) for f in fields(value)}
 
@@ -51,6 +55,18 @@ def encode_mechanism(mechanism: Mechanism) -> Any:
 def decode_mechanism(data: Any) -> Mechanism:
     """Decode a mechanism; the inverse of ``encode_mechanism``."""
     return msgspec.convert(data, Mechanism, dec_hook=lambda _, value: np.array(value, dtype=float))
+
+
+def encode_turbine(turbine: "Turbine") -> Any:
+    """Encode a turbine as dictionaries, lists, numbers and strings."""
+    return msgspec.to_builtins(turbine, enc_hook=_plain)
+
+
+def decode_turbine(data: Any) -> "Turbine":
+    """Decode a turbine; the inverse of ``encode_turbine``."""
+    from ...core.rotor.turbine import Turbine
+
+    return msgspec.convert(data, Turbine, dec_hook=lambda _, value: np.array(value, dtype=float))
 
 
 def decode_modes(data: dict[str, Any]) -> Modes:

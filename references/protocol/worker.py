@@ -1,9 +1,10 @@
 """Run codes in separate processes. ``process`` enforces the limits, ``boundary`` validates the answers.
 
-The process reads one request, with a blade or with mechanisms ::
+The process reads one request, with a blade, a turbine or mechanisms ::
 
     {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
     {"code": "module:attribute", "folder": …, "blade": {…}, "fingerprints": [elements, …]}
+    {"code": "module:attribute", "folder": …, "turbine": {…}, "runs": [[omega, elements, count], …]}
     {"code": "module:attribute", "folder": …, "mechanisms": [{…}, …], "guess": {…}}
 
 imports the code, checks its version and whether it declines, and writes one line per question as soon as it is solved:
@@ -17,26 +18,32 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 from math import nan
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 from ...core.blade import Blade
 from ...core.mechanism.description import Mechanism
-from ...core.modes import Modes
+from ...core.modes import STATIONS, Modes
 from . import boundary, registry, sources, store
 from .boundary import NonsenseError
 from .fingerprint import Fingerprint
 from .interface import CodeError, MechanismModes
 from .process import Failure, Limits, converse, one_line
+from .turbines import TurbineModes
 from .wire import (
     Reply,
     decode_blade,
     decode_mechanism,
+    decode_turbine,
     encode,
     encode_mechanism,
+    encode_turbine,
     failed,
     foreign_exception,
     serve,
 )
+
+if TYPE_CHECKING:
+    from ...core.rotor.turbine import Turbine
 
 T = TypeVar("T")
 
@@ -46,6 +53,8 @@ Run = tuple[float, int, int]
 Answer = Modes | Failure
 
 MechanismAnswer = MechanismModes | Failure
+
+TurbineAnswer = TurbineModes | Failure
 
 FingerprintAnswer = Fingerprint | Failure | None
 """None: the code reports none."""
@@ -106,6 +115,25 @@ def mechanism_answers(
         return json.dumps({**fixed, "mechanisms": [encode_mechanism(mechanisms[k]) for k in numbers]}).encode()
 
     return _exchange(request, len(mechanisms), limits, lambda _, data: boundary.mechanism_modes(data), name, version)
+
+
+def turbine_answers(
+    name: str, turbine: "Turbine", runs: Sequence[Run], limits: Limits, version: str = ""
+) -> list[TurbineAnswer]:
+    """A code's modes of a turbine for each run, or a failure, in the order of ``runs``.
+
+    Other arguments and exceptions as for ``answers``.
+    """
+    fixed = {**registry.address(name), "turbine": encode_turbine(turbine)}
+    stations = len(STATIONS) * (1 + turbine.blades)
+
+    def request(numbers: Sequence[int]) -> bytes:
+        return json.dumps({**fixed, "runs": [list(runs[k]) for k in numbers]}).encode()
+
+    def modes(number: int, data: Any) -> TurbineModes:
+        return boundary.turbine_modes(data, runs[number][2], stations)
+
+    return _exchange(request, len(runs), limits, modes, name, version)
 
 
 def _exchange(
@@ -176,7 +204,7 @@ def _declined(code: Any, asked: str, question: object) -> Reply | None:
     Args:
         code: any code.
         asked: name of its method that returns the reason for declining, e.g. ``unsupported``.
-        question: a blade or a mechanism.
+        question: a blade, a turbine or a mechanism.
     """
     try:
         why = getattr(code, asked)(question)
@@ -214,6 +242,8 @@ def _answer(request: Any) -> Iterator[Reply]:
         yield from _fingerprint_replies(code, decode_blade(request["blade"]), request["fingerprints"])
     elif "blade" in request:
         yield from _blade_replies(code, decode_blade(request["blade"]), request["runs"])
+    elif "turbine" in request:
+        yield from _turbine_replies(code, decode_turbine(request["turbine"]), request["runs"])
     else:
         yield from _mechanism_replies(code, map(decode_mechanism, request["mechanisms"]), request["guess"])
 
@@ -224,6 +254,14 @@ def _blade_replies(code: Any, blade: Blade, runs: Sequence[Run]) -> Iterator[Rep
         return
     for omega, elements, count in runs:
         yield _solved("modes", Modes, partial(code.solve, blade, omega, elements, count))
+
+
+def _turbine_replies(code: Any, turbine: "Turbine", runs: Sequence[Run]) -> Iterator[Reply]:
+    if refusal := _declined(code, "unsupported_turbine", turbine):
+        yield from [refusal] * len(runs)
+        return
+    for omega, elements, count in runs:
+        yield _solved("turbine_modes", TurbineModes, partial(code.solve_turbine, turbine, omega, elements, count))
 
 
 def _fingerprint_replies(code: Any, blade: Blade, elements: Sequence[int]) -> Iterator[Reply]:

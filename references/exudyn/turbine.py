@@ -1,0 +1,145 @@
+"""Exudyn's kinematic tree of a whole turbine: tower and blades as rigid segments on elastic hinges.
+
+The segments are those of ``hinged_segments``: the data of the deck, divided here, without core's elements, frames or reduction
+to few motions. Exudyn computes kinematics and inertia forces and linearises the whole machine at three azimuths; Fourier
+coordinates of the blades remove the azimuth (``protocol.rotating``). The blades are in balance at the rotor speed, and the
+tower under the weight of all that it carries, as if the rotor were rigid: gravity does not act on the blades' own motions,
+which it would make periodic.
+"""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, straight
+from ...core.effects import ALL_EFFECTS
+from ...core.rotor.turbine import Turbine
+from ..protocol import rotating
+from ..protocol.interface import REFERENCE_LINE, Independence
+from ..protocol.quadratic import gyroscopic_modes
+from ..protocol.turbines import TurbineAdapter, TurbineModes
+from ..theories import turbine_tree
+from ..theories.reference_line import line
+from ..theories.turbine_tree import NOTHING, Body, Chain, TurbineTree
+from . import system as ex
+from .hinged_segments import HingedSegments, hinge_segments, root_segment
+from .tree import JOINT, linearize
+
+Array = NDArray[np.float64]
+
+
+class ExudynTurbine(TurbineAdapter):
+    """See the module."""
+
+    name = "exudyn-turbine"
+    title = "Exudyn, kinematic tree of the turbine"
+    independence = Independence(
+        "Exudyn",
+        "rigid segments on elastic hinges",
+        "Exudyn",
+        sections=REFERENCE_LINE,
+        eigensolver="the adapters' own, in Fourier coordinates of the blades",
+    )
+    effects = ALL_EFFECTS
+    levels = (12, 18, 27)
+    order = 2
+    finest = 60
+    hint = ex.HINT
+    distribution = ex.DISTRIBUTION
+
+    def unsupported_turbine(self, turbine: Turbine) -> str | None:
+        """A reason if the tower is not straight and clamped, or the line of the blades has kinks."""
+        tower, blade = turbine.tower, turbine.blade
+        if not (straight(tower) and clamped(tower)) or tower.twist.any():
+            return "the tower is not straight, without twist and clamped"
+        if not clamped(blade):
+            return "the blades are not clamped to the hub"
+        if blade.kinks:
+            return f"a kink at {blade.kinks[0]:g} m: all sections of an element use the axes of its hinge"
+        if any(np.isinf(b.stiffness[:, [BEND_Y, BEND_Z], [BEND_Y, BEND_Z]]).any() for b in (tower, blade)):
+            return "rigid in bending: a hinge needs finite EI_y and EI_z"
+        return None
+
+    def turbine_modes(self, turbine: Turbine, omega: float, elements: int, count: int) -> TurbineModes:
+        """The lowest modes; see ``protocol.turbines``.
+
+        Raises:
+            CodeError: no stable steady state at this speed, or equations that change with the azimuth.
+        """
+        segments = hinge_segments(turbine.blade, elements, omega, equal=True)
+        tower = hinge_segments(turbine.tower, elements, equal=True)
+        tree = turbine_tree.build(turbine, chain(turbine.tower, tower), chain(turbine.blade, segments))
+        *blade, at_blade = linearize(segments, omega)
+        q = np.zeros(len(tree.strain))
+        q[tree.tower], weight = turbine_tree.standing(tree)
+        q[tree.blades] = at_blade
+
+        def at(psi: float) -> tuple[Array, Array, Array]:
+            M, C, K = _linearized(tree, q, omega, psi)
+            K[np.ix_(tree.tower, tree.tower)] += weight
+            return turbine_tree.with_generator(tree, q, M, C, K)
+
+        groups = [[int(k) - 1 for k in joint] for joint in tree.blades.T]  # without the azimuth
+        lowest = float(gyroscopic_modes(*blade, 1)[0][0])
+        values, x = rotating.lowest(at, omega, groups, count, lowest, turbine.drivetrain.free)
+        full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
+        return TurbineModes(values, turbine_tree.shapes(tree, q, full), elements)
+
+
+def chain(blade: Blade, segments: HingedSegments) -> Chain:
+    """Hinged segments as a chain of joints."""
+    bodies = [NOTHING] * len(segments.strain)
+    for link, *body in zip(segments.segment, segments.mass, segments.centre, segments.inertia, strict=True):
+        bodies[link] = Body(*body)
+    return Chain(
+        strain=segments.strain,
+        stiffness=np.diag(segments.stiffness) + segments.coupling.toarray(),
+        offset=segments.offset,
+        axes=segments.rotation,
+        bodies=tuple(bodies),
+        root=Body(*root_segment(blade, segments.start)),
+        base=line(blade, np.zeros((1, 1))).position[0, 0],
+        nodes=segments.segment,
+        reach=segments.reach,
+        arc=segments.ends[1:],
+        tip=(segments.reach[-1], np.eye(3)),
+    )
+
+
+def _linearized(tree: TurbineTree, q: Array, omega: float, psi: float) -> tuple[Array, Array, Array]:
+    """Exudyn's M, C, K (n, n) at an azimuth, with the springs of all joints."""
+    exu, _container, mbs = ex.system()
+    items, n = exu.itemInterface, len(q)
+    rates = np.zeros(n)
+    at = q.copy()
+    rates[tree.spin], at[tree.spin] = omega, psi
+    node = mbs.AddNode(
+        items.NodeGenericODE2(
+            numberOfODE2Coordinates=n,
+            referenceCoordinates=np.zeros(n),
+            initialCoordinates=at,
+            initialCoordinates_t=rates,
+        )
+    )
+    zero = np.zeros(n)
+    mbs.AddObject(
+        items.ObjectKinematicTree(
+            nodeNumber=node,
+            jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in tree.strain],
+            linkParents=tree.parent,
+            jointTransformations=exu.Matrix3DList(list(tree.axes)),
+            jointOffsets=exu.Vector3DList(list(tree.offset)),
+            linkMasses=[body.mass for body in tree.bodies],
+            linkCOMs=exu.Vector3DList([body.centre for body in tree.bodies]),
+            linkInertiasCOM=exu.Matrix3DList([body.moments for body in tree.bodies]),
+            jointPControlVector=zero,
+            jointDControlVector=zero,
+            jointPositionOffsetVector=zero,
+            jointVelocityOffsetVector=zero,
+        )
+    )
+    mbs.Assemble()
+    M, C, K = ex.linearized(exu, mbs, still=not omega, full=True)
+    return M, C, K + tree.stiffness
+
+
+CODE = ExudynTurbine()

@@ -1,0 +1,56 @@
+"""Exudyn's turbine against core's: frequencies extrapolated from two refinements, and shapes at the common stations."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+from southwell.core.blade import AXIAL, TORSION, Blade
+from southwell.core.rotor.stations import weights
+from southwell.core.rotor.turbine import Drivetrain, Turbine, machine
+from southwell.core.rotor.turbine_modes import TurbineModes, turbine_modes
+from southwell.references.exudyn.turbine import CODE
+from southwell.tests.support.turbines import small
+
+OMEGA, COUNT = 4.0, 8
+
+TURBINES = {
+    "rigid shaft": small(),
+    "locked generator": small(4e5, Drivetrain(2e6, 0.3, 20.0, False)),
+    "free generator": small(4e5, Drivetrain(2e6, 0.3, 20.0, True)),
+}
+
+
+def macs(turbine: Turbine, core: TurbineModes, shapes: np.ndarray) -> np.ndarray:
+    """(m, m) of core's modes and others."""
+    weight = np.concatenate([np.diagonal(w) for w in weights(turbine)])
+    x, y = (s.reshape(len(s), -1) * np.sqrt(weight) for s in (core.motions, shapes))
+    return np.abs(x.conj() @ y.T) ** 2 / np.outer((np.abs(x) ** 2).sum(1), (np.abs(y) ** 2).sum(1))
+
+
+def bending_only(beam: Blade) -> Blade:
+    """Rigid in stretch, shear and torsion: a third of the joints."""
+    stiffness = beam.stiffness.copy()
+    rigid = [AXIAL, TORSION]
+    stiffness[:, rigid, rigid] = np.inf
+    return replace(beam, stiffness=stiffness)
+
+
+@pytest.mark.parametrize("name", TURBINES)
+def test_the_limit_of_two_refinements_is_cores(name: str) -> None:
+    turbine = replace(
+        TURBINES[name], tower=bending_only(small().tower), blade=bending_only(small().blade), gravity=30.0
+    )
+    core = turbine_modes(machine(turbine), OMEGA, COUNT)
+    coarse, fine = (np.abs(CODE.turbine_modes(turbine, OMEGA, n, COUNT).values) for n in (6, 9))
+    limit = fine + (fine - coarse) / (1.5**2 - 1.0)
+    np.testing.assert_allclose(limit, core.frequencies, rtol=1e-3)
+
+
+def test_shapes_are_those_of_core() -> None:
+    turbine = TURBINES["locked generator"]
+    core = turbine_modes(machine(turbine), OMEGA, 6)
+    answer = CODE.turbine_modes(turbine, OMEGA, 6, 6)
+    mac = macs(turbine, core, answer.shapes)
+    assert np.diagonal(mac).min() > 0.999
+    assert (mac - np.diag(np.diagonal(mac))).max() < 0.5
