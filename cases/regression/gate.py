@@ -1,7 +1,8 @@
 """Comparison of a run with an earlier one: moved, worse and missing answers.
 
 Cells are identified by case, code, rotor speed, mode and quantity. A run fails for a new miss (including that of a new cell), a
-missing answer, a wider target, or a seeded fault that is no longer detected or tried. Moved frequencies are listed and fail
+missing answer, a wider target, a seeded fault that is no longer detected or tried, or a property of a blade that is wrong or no
+longer checked. Moved frequencies are listed and fail
 a run only on request, since an improved discretisation also moves them. Measured data are not answers: they are counted but
 cannot fail a run.
 """
@@ -11,7 +12,9 @@ from dataclasses import dataclass, replace
 
 from ..judge.quantities import difference
 from ..judge.results import Verdict
+from . import properties
 from .history import Detection, Entry, Key, Point
+from .properties import PropertyChange
 
 MOVED = 1e-9
 """Relative change above which a frequency counts as moved."""
@@ -65,6 +68,7 @@ class Comparison:
         worse: cells with a worse verdict, worst first.
         loosened: cells with a wider target.
         measured: number of measured points in the later run.
+        properties: properties that are worse, wrong for the first time, or no longer checked.
         better: cells with a better verdict.
         gone: missing answers.
         new: cells with an answer that had none.
@@ -83,6 +87,7 @@ class Comparison:
     missed: tuple[str, ...] = ()
     loosened: tuple[Change, ...] = ()
     measured: int = 0
+    properties: tuple[PropertyChange, ...] = ()
 
     @property
     def versions(self) -> dict[str, tuple[str, str]]:
@@ -93,13 +98,15 @@ class Comparison:
 
     def passed(self, strict: bool = False) -> bool:
         """Whether nothing got worse; with ``strict``, also whether nothing moved."""
-        worse = self.worse or self.loosened or self.gone or self.undetected or self.missed
+        worse = self.worse or self.loosened or self.gone or self.undetected or self.missed or self.properties
         return not (worse or (strict and self.moved))
 
 
 def misses(entry: Entry) -> int:
-    """Number of cells of a run that failed or were inconclusive, and of seeded faults that it did not detect."""
-    return sum(RANK.get(p.verdict, 0) >= MISS for p in entry.cells) + sum(not c.detected_by for c in entry.controls)
+    """Number of cells of a run that failed or were inconclusive, of seeded faults not detected, and of wrong properties."""
+    cells = sum(RANK.get(p.verdict, 0) >= MISS for p in entry.cells)
+    wrong = sum(p.verdict == "fail" for p in entry.properties)
+    return cells + wrong + sum(not c.detected_by for c in entry.controls)
 
 
 def nothing(after: Entry) -> Entry:
@@ -115,6 +122,7 @@ def within(entry: Entry, other: Entry) -> Entry:
         entry,
         cells=tuple(p for p in entry.cells if p.case in cases),
         controls=tuple(c for c in entry.controls if c.case in cases and c.control in tried),
+        properties=tuple(p for p in entry.properties if p.case in cases),
     )
 
 
@@ -150,6 +158,7 @@ def compare(
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),
         measured=sum(p.verdict == "measured" for p in after.cells),
+        properties=properties.changes(before.properties, after.properties),
     )
 
 

@@ -17,6 +17,8 @@ import portalocker
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..judge import checks
 from ..judge.results import Cell, Run, Verdict
+from . import properties
+from .properties import Property
 
 
 class Point(msgspec.Struct, frozen=True, array_like=True):
@@ -70,6 +72,7 @@ class Entry:
         versions: package or code → version.
         cells: in the run's order.
         controls: in the run's order.
+        properties: in the run's order.
     """
 
     commit: str
@@ -78,6 +81,7 @@ class Entry:
     versions: dict[str, str]
     cells: tuple[Point, ...]
     controls: tuple[Detection, ...] = ()
+    properties: tuple[Property, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,10 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
             )
             for c in run.cells
         ),
-        controls=tuple(Detection(c.control, c.case, c.omega, c.detected_by) for c in run.controls if not c.needs),
+        controls=tuple(
+            Detection(c.control, c.case, c.omega, c.detected_by) for c in run.controls if c.detected_by or c.missed
+        ),
+        properties=properties.entries(run.property_checks),
     )
 
 

@@ -15,6 +15,7 @@ from ...cases.judge.quantities import QUANTITIES
 from ...cases.judge.results import described
 from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone
 from ...cases.regression.history import Detection, Entry, Point
+from ...cases.regression.properties import PropertyChange
 from ..shared import table_columns
 from ..shared.markdown import plain, table
 from ..shared.units import RAD_S, Units
@@ -38,6 +39,7 @@ def verdict(found: Comparison, strict: bool) -> str:
         "gone": len(found.gone),
         "seeded faults no longer detected": len(found.undetected),
         "seeded faults missed": len(found.missed),
+        "properties wrong or no longer checked": len(found.properties),
         "moved": len(found.moved),
         "better": len(found.better),
         "new": len(found.new),
@@ -60,6 +62,7 @@ def sections(found: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
         ("Gone", _gone(found.gone, units)),
         ("Seeded faults that are no longer detected, or not tried", [_undetected(c, units) for c in found.undetected]),
         ("Required seeded faults that are not detected", [{"fault": name} for name in found.missed]),
+        ("Properties that are wrong or no longer checked", [_property(c) for c in found.properties]),
         ("Moved", [_change(c, units) for c in found.moved]),
         ("Better", [_change(c, units) for c in found.better]),
         ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in found.versions.items()]),
@@ -140,6 +143,18 @@ def _undetected(control: Detection, units: ByCase) -> Row:
     }
 
 
+def _property(change: PropertyChange) -> Row:
+    check, (was, now) = change.check, (p.verdict if p else "not there" for p in (change.before, change.after))
+    size = check.difference if change.after else None
+    return {
+        "case": check.case,
+        "check": f"{check.quantity}, {check.code}",
+        "property": check.part or "all",
+        "difference": "" if size is None else f"{size:+.2g}",
+        "verdict": now if was == now else f"{was} → {now}",
+    }
+
+
 def tables(found: Comparison, units: ByCase, width: int) -> Iterator[RenderableType]:
     """All tables for a console of ``width`` characters, each cut after ``SHOWN`` rows with the number of further ones."""
     for title, every in sections(found, units):
@@ -177,6 +192,13 @@ def annotations(found: Comparison, folder: Path, units: ByCase) -> list[str]:
     ]
     for control, case in dict.fromkeys((c.control, c.case) for c in found.undetected):
         rows.append(("error", case, f"{control}: a seeded fault that is no longer detected, or not tried"))
+    for case, what in dict.fromkeys((c.check.case, f"{c.check.quantity} by {c.check.code}") for c in found.properties):
+        parts = [
+            f"{p.check.part or 'all properties'} ({_property(p)['verdict']})"
+            for p in found.properties
+            if (p.check.case, f"{p.check.quantity} by {p.check.code}") == (case, what)
+        ]
+        rows.append(("error", case, f"{what}: {', '.join(parts)}"))
     rows += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing], units)]
     return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in rows]
 

@@ -1,4 +1,4 @@
-"""A run as JUnit XML: one test suite per blade, one test case per cell.
+"""A run as JUnit XML: one test suite per blade, one test case per cell and per check of a property.
 
 Written with ElementTree of the standard library. Characters that XML cannot represent, such as in the output of a
 crashed code, are replaced.
@@ -8,7 +8,7 @@ import re
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...cases.judge.quantities import QUANTITIES
-from ...cases.judge.results import Cell, Run, described
+from ...cases.judge.results import Cell, PropertyCheck, Run, described
 from ...cases.regression.gate import Comparison
 from ...cases.regression.history import Detection, Key, Point, key
 from ..shared import summary
@@ -37,6 +37,8 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
         for cell in (c for c in run.cells if c.case == case):
             test = _test(suite, case, _name(cell))
             _judge(test, cell, findings.get(key(cell), ""))
+        for check in (c for c in run.property_checks if c.case == case):
+            _check(_test(suite, case, f"{check.quantity} by {check.code}: {check.part or 'no property'}"), check)
     if found:
         _regressions(root, found)
     for suite in root:
@@ -60,7 +62,8 @@ def _findings(found: Comparison, strict: bool) -> dict[Key, str]:
 
 def _regressions(root: Element, found: Comparison) -> None:
     """Add test cases for missing answers and for faults that are no longer detected."""
-    if not (found.gone or found.undetected):
+    lost = [c for c in found.properties if c.before and c.check.verdict != "fail"]
+    if not (found.gone or found.undetected or lost):
         return
     suite = SubElement(root, "testsuite", name="against the earlier run")
     for gone in found.gone:
@@ -69,6 +72,10 @@ def _regressions(root: Element, found: Comparison) -> None:
         _failed(test, "gone", f"the answer {_digits(p)} is missing; now {gone.instead or 'nothing'}")
     for control in found.undetected:
         _lost(suite, control)
+    for change in lost:
+        check, now = change.check, change.after.verdict if change.after else "not there"
+        test = _test(suite, check.case, f"{check.quantity} by {check.code}: {check.part or 'no property'}")
+        _failed(test, "no longer checked", f"was {change.before.verdict if change.before else ''}; now {now}")
 
 
 def _lost(suite: Element, control: Detection) -> None:
@@ -97,6 +104,16 @@ def _judge(test: Element, cell: Cell, finding: str) -> None:
     elif cell.verdict in summary.BAD:
         _failed(test, cell.verdict, said)
     elif cell.verdict in SKIPPED:
+        SubElement(test, "skipped", message=_text(said))
+    else:
+        SubElement(test, "system-out").text = _text(said)
+
+
+def _check(test: Element, check: PropertyCheck) -> None:
+    said = ": ".join(part for part in (check.verdict, check.reason) if part)
+    if check.verdict == "fail":
+        _failed(test, check.verdict, said)
+    elif check.verdict in SKIPPED:
         SubElement(test, "skipped", message=_text(said))
     else:
         SubElement(test, "system-out").text = _text(said)

@@ -44,8 +44,8 @@ def command(
 ) -> int:
     """Compare a run with an earlier one; status 1 if anything got worse.
 
-    Worse means a worse verdict, a missing answer, or a seeded fault that is no longer detected or not tried. Changed
-    frequencies are listed. An incomplete run does not pass: status 3.
+    Worse means a worse verdict, a missing answer, a seeded fault that is no longer detected or not tried, or a property of a
+    blade that is wrong or no longer checked. Changed frequencies are listed. An incomplete run does not pass: status 3.
 
     Parameters
     ----------

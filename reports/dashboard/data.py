@@ -15,6 +15,7 @@ from ..shared.summary import SYMBOL, WORST_FIRST, broad, columns, plus_minus, si
 from ..shared.units import BY_KEY, Units
 from ..verification import code_pages, controls, evidence, paper_table, witnesses
 from ..verification.figures import core_lines
+from . import properties
 from .moving import moving
 
 LONGEST = 80
@@ -67,6 +68,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
             for c in run.cells
         ],
         "controls": [_control(c) for c in run.controls],
+        "properties": properties.of_matrix(run),
     }
 
 
@@ -114,7 +116,9 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
     u = units(run, case)
     cells = [c for c in run.cells if c.case == case]
     setting = next((s for s in run.settings if s.case == case), None)
-    alone = replace(run, cells=tuple(cells), controls=(), settings=(setting,) if setting else ())
+    checks = tuple(c for c in run.property_checks if c.case == case)
+    settings = (setting,) if setting else ()
+    alone = replace(run, cells=tuple(cells), controls=(), settings=settings, property_checks=checks)
     return {
         "name": case,
         "setting": asdict(setting) if setting else None,
@@ -127,6 +131,7 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
         "verdicts": verdicts(),
         "columns": columns(cells),
         "cells": [_cell(c, u) for c in cells],
+        "properties": properties.of_case(run, case),
         "lines": _lines(cells, u),
         "levels": [
             [v.code, v.omega * u.speeds, v.mode, v.elements, v.frequency * u.frequencies]

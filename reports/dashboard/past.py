@@ -11,6 +11,7 @@ from typing import Any
 
 from ...cases.regression.gate import MOVED
 from ...cases.regression.history import Entry, History, Key
+from ...cases.regression.properties import CHECKED
 from ..shared.summary import WORST_FIRST
 from .data import verdicts
 
@@ -38,6 +39,8 @@ def _run(e: Entry) -> dict[str, Any]:
         "counts": [[k, n] for k, v in enumerate(WORST_FIRST) if (n := sum(p.verdict == v for p in e.cells))],
         "detected": len({c.control for c in e.controls if c.detected_by}),
         "controls": len({c.control for c in e.controls}),
+        "wrong": sum(p.verdict == "fail" for p in e.properties),
+        "properties": sum(p.verdict in CHECKED for p in e.properties),
     }
 
 

@@ -31,7 +31,7 @@ def contradictions(run: Run) -> list[str]:
 
 def lines(run: Run) -> list[str]:
     """Lines on properties that fail or cannot be judged, and on what was read a second time or could not be."""
-    out = [f"{_what(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict in STATED]
+    out = [f"{subject(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict in STATED]
     agreeing: dict[str, list[str]] = {}  # reader → properties of blades
     readings = [c for c in run.property_checks if c.quantity == "reading"]
     for case in dict.fromkeys(c.case for c in readings):
@@ -60,7 +60,8 @@ def _unchanged(run: Run) -> list[str]:
     return [f"Invariances: frequencies of {of} are equal in {len(solved)} other descriptions, to {unsigned(largest)}."]
 
 
-def _what(check: PropertyCheck) -> str:
+def subject(check: PropertyCheck) -> str:
+    """What is checked, in words: ``Second reading``, ``Model of pinocchio``, ``Invariance``."""
     return {"reading": "Second reading", "fingerprint": f"Model of {check.code}", "invariance": "Invariance"}[
         check.quantity
     ]
@@ -71,7 +72,7 @@ def readings(run: Run, case: str) -> list[dict[str, str]]:
     return [
         {
             "property": f"{c.part} [{c.unit}]" if c.part else "",
-            "largest difference": _size(c),
+            "largest difference": size(c),
             "verdict": f"{SYMBOL[c.verdict]} {c.reason or c.verdict}",
         }
         for c in run.property_checks
@@ -84,7 +85,7 @@ def invariances(run: Run, case: str) -> list[dict[str, str]]:
     return [
         {
             "description": c.part,
-            "largest change of a frequency": "" if c.difference is None else f"{_size(c)} ± {unsigned(c.target)}",
+            "largest change of a frequency": "" if c.difference is None else f"{size(c)} ± {unsigned(c.target)}",
             "verdict": f"{SYMBOL[c.verdict]} {c.reason or c.verdict}",
         }
         for c in run.property_checks
@@ -107,10 +108,10 @@ def models(run: Run, case: str) -> list[dict[str, str]]:
         out.append(
             {
                 "model of": code,
-                "mass": _size(by.get("mass")),
-                "first moments": _size(_largest(moments)),
-                "inertia": _size(by.get("inertia about the rotor's axis")),
-                "tip flexibility": _size(_largest(bends)),
+                "mass": size(by.get("mass")),
+                "first moments": size(_largest(moments)),
+                "inertia": size(by.get("inertia about the rotor's axis")),
+                "tip flexibility": size(_largest(bends)),
                 "verdict": f"{SYMBOL[verdict]} {reason}",
             }
         )
@@ -125,7 +126,8 @@ def _codes(checks: Iterable[PropertyCheck]) -> list[str]:
     return list(dict.fromkeys(c.code for c in checks))
 
 
-def _size(check: PropertyCheck | None) -> str:
+def size(check: PropertyCheck | None) -> str:
+    """The difference of a property in percent; empty if nothing is compared."""
     if check is None or not check.part:
         return ""
     if check.difference is None:

@@ -159,6 +159,9 @@ function spanwise(rest, mode) {
 }
 
 function everything() {
+  if (DATA.properties.length) MAIN.append(make("details", { open: DATA.properties.some((p) => DATA.verdicts[p.verdict].name === "fail") }, make("summary", {}, `Properties of the blade: ${DATA.properties.length} checks`),
+    table(["check", "property", "value", "reference", "unit", "difference", "verdict", "why"], DATA.properties.map((p) => row(p.check, p.property, digits(p.value, 7), digits(p.reference, 7), p.unit, p.difference, judged(p.verdict),
+      make("td", { class: "reason" }, p.reason))), { id: "properties" })));
   const lines = DATA.cells.map((c) => row(inWords(c.speed), c.name, c.code, judged(c.verdict), c.text, digits(c.f, 8), c.elements, digits(c.order, 3), make("td", { class: "reason" }, c.reason)));
   MAIN.append(make("details", {}, make("summary", {}, `Every number: ${lines.length} cells`),
     table(["speed", "mode", "code", "verdict", "difference ± uncertainty", `value; frequencies in ${DATA.frequency}`, "elements", "order", "why"], lines, { id: "everything" })));

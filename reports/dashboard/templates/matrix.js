@@ -68,9 +68,17 @@ function matrix() {
   draw();
   MAIN.append(make("h2", {}, "The evidence, kind by kind"), table(Object.keys(DATA.evidence[0] || {}),
     DATA.evidence.map((kind) => row(...Object.values(kind).map((text) => make("td", { class: "prose" }, text)))), { id: "evidence" }));
+  if (DATA.properties.length) properties();
   if (DATA.controls.length) controls();
   MAIN.append(make("h2", {}, "How to get this"), make("p", {}, make("code", {}, DATA.command)),
     make("p", { class: "muted" }, Object.entries(DATA.versions).map(([k, v]) => `${k} ${v}`).join(", ")));
+}
+
+function properties() {
+  const page = (name) => DATA.cases.find((c) => c.name === name)?.page;
+  MAIN.append(make("h2", {}, "Properties of the blades"), make("p", { class: "muted" }, "A second reading of each file, the model that each code assembles, and other descriptions of the same blade."),
+    table(["case", "check", "verdict", "properties", "why"], DATA.properties.map((p) => row(make("td", {}, link(page(p.case), p.case)), p.check, judged(p.verdict),
+      make("td", { class: "prose" }, [p.count, ...p.properties].join(", ")), make("td", { class: "reason" }, p.reason))), { id: "properties" }));
 }
 
 function controls() {
