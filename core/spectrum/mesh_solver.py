@@ -49,12 +49,38 @@ class Start:
 
 @dataclass(frozen=True)
 class Solved:
-    """Modes of one mesh at one speed, with the steady state, the eigenvectors, and the start for the next speed."""
+    """The lowest modes of one mesh at one speed.
 
-    modes: Modes
-    state: Steady
+    Attributes:
+        omega: rotor speed, rad/s.
+        frequencies: (m,) natural frequencies, rad/s, ascending.
+        shapes: (m, 21 b, 4) as in ``Modes``, in the hub's axes, of the mesh's b blades one after the other.
+        vectors: (n, m) eigenvectors.
+        state: the steady state, with its pencil.
+        strain: largest axial or shear strain in the steady state.
+        elements: number of elements.
+        seconds: wall time of the solution.
+        start: for the next speed.
+    """
+
+    omega: float
+    frequencies: Array
+    shapes: NDArray[np.complex128]
     vectors: NDArray[np.complex128]
+    state: Steady
+    strain: float
+    elements: int
+    seconds: float
     start: Start
+
+    @property
+    def modes(self) -> Modes:
+        """The modes of a mesh with one blade.
+
+        Raises:
+            ValueError: the mesh has several blades.
+        """
+        return Modes(self.omega, self.frequencies, self.shapes, self.elements, strain=self.strain, seconds=self.seconds)
 
 
 def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None, near: Shape | None = None) -> Solved:
@@ -83,9 +109,17 @@ def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None
     others = [(square, q) for square, q in start.coordinates.items() if square != omega**2]
     latest = dict([*others, (omega**2, steady.coordinates(mesh, state.shape))][-LATEST:])
     shapes = mode_shapes(mesh, state.shape, pencil.on_nodes(state.pencil, lowest.vectors))
-    seconds = time.perf_counter() - begun
-    modes = Modes(omega, lowest.frequencies, shapes, mesh.elements, strain=strain, seconds=seconds)
-    return Solved(modes, state, lowest.vectors, Start(latest, basis))
+    return Solved(
+        omega,
+        lowest.frequencies,
+        shapes,
+        lowest.vectors,
+        state,
+        strain,
+        mesh.elements,
+        seconds=time.perf_counter() - begun,
+        start=Start(latest, basis),
+    )
 
 
 def _lowest(p: TreePencil, count: int, basis: lanczos.Start | None) -> tuple[Eigen, lanczos.Start | None]:
@@ -109,9 +143,9 @@ def _lowest(p: TreePencil, count: int, basis: lanczos.Start | None) -> tuple[Eig
 def rounding(mesh: Mesh, solved: Solved, options: Options) -> Array:
     """(m,) relative error of the frequencies due to rounding."""
     if not (options.effects.geometric and options.effects.prestretch):  # about the undeformed shape, which is exact
-        return np.full(len(solved.modes.frequencies), accuracy.FLOOR)
-    change = accuracy.rounding(mesh, solved.state, solved.modes.omega, options.gravity, options.effects, solved.vectors)
-    return accuracy.FLOOR + change / solved.modes.frequencies
+        return np.full(len(solved.frequencies), accuracy.FLOOR)
+    change = accuracy.rounding(mesh, solved.state, solved.omega, options.gravity, options.effects, solved.vectors)
+    return accuracy.FLOOR + change / solved.frequencies
 
 
 def free_root(omega: float) -> UnstableError:

@@ -115,9 +115,9 @@ class AtSpeed:
     def bias(self, key: Key, solved: Solved) -> Array:
         """(m,) relative change of a mesh's frequencies due to the compliance of rigid strains."""
         if self.meshes.softened is None:
-            return np.zeros(len(solved.modes.frequencies))
+            return np.zeros(len(solved.frequencies))
         twice = self.solved(key._replace(softened=True), solved.state.shape)
-        return twice.modes.frequencies / solved.modes.frequencies - 1.0
+        return twice.frequencies / solved.frequencies - 1.0
 
 
 def without_bias(coarse: Array, fine: Array) -> tuple[Array, Array]:
@@ -159,9 +159,9 @@ def _refined(at: AtSpeed, requested: float) -> Modes:
             solved = []
             continue
         last = solved[-1].modes
-        if len(solved) < 3 or len({len(s.modes.frequencies) for s in solved[-3:]}) > 1:
+        if len(solved) < 3 or len({len(s.frequencies) for s in solved[-3:]}) > 1:
             continue
-        estimate = accuracy.estimate(np.array([s.modes.frequencies for s in solved[-3:]]), meshes.order)
+        estimate = accuracy.estimate(np.array([s.frequencies for s in solved[-3:]]), meshes.order)
         rounded = at.rounding(Key(level=level), solved[-1])
         factor, of_factor = without_bias(*(at.bias(Key(level=level - k), solved[-1 - k]) for k in (2, 1)))
         values = factor * estimate.values
@@ -224,7 +224,7 @@ def _coarser(at: AtSpeed, last: Modes) -> Array | None:
         bias = at.bias(Key(n // 4), coarse)
     except _FAILURES:
         return None
-    few, more = coarse.modes.frequencies[:m], half.modes.frequencies[:m]
+    few, more = coarse.frequencies[:m], half.frequencies[:m]
     if len(few) < m or len(more) < m:
         return None
     return accuracy.estimate(np.array([few, more, last.frequencies]), at.meshes.order).of_finest + np.abs(bias[:m])

@@ -15,7 +15,7 @@ from southwell.core.space import spatial as sp
 from southwell.core.space.inertia import transformed
 from southwell.core.spectrum import completeness
 from southwell.core.spectrum.lanczos import lanczos
-from southwell.core.spectrum.mesh_solver import balance
+from southwell.core.spectrum.mesh_solver import Options, balance, solve
 from southwell.core.spectrum.modal import linearize, modes
 from southwell.core.steady.blade_state import Steady
 from southwell.core.tree.as_mechanism import mechanism
@@ -97,6 +97,19 @@ def test_a_rotor_on_a_rigid_hub_has_the_frequencies_of_its_blade_three_times() -
     branch = discretize(blade(), 8)
     alone, rotor = frequencies(branch, 9.0, 4), frequencies(around_hub(branch, 3), 9.0, 12)
     np.testing.assert_allclose(rotor, alone.repeat(3), rtol=1e-10)
+
+
+def test_shapes_of_a_rotor_are_those_of_its_blades_one_after_the_other() -> None:
+    branch = discretize(blade(), 4)
+    alone, rotor = (solve(mesh, 9.0, Options(3)) for mesh in (branch, around_hub(branch, 3)))
+    np.testing.assert_allclose(rotor.frequencies, alone.frequencies[[0, 0, 0]], rtol=1e-10)
+    assert rotor.shapes.shape == (3, 63, 4)
+    first = alone.modes.shapes[0, :, :3]
+    for k, shape in enumerate(np.split(rotor.shapes[0, :, :3], 3)):
+        own = shape @ sp.rotation(2, np.array(2.0 * np.pi * k / 3))  # in the axes of its blade
+        assert abs(np.vdot(own, first)) == pytest.approx(np.linalg.norm(own) * np.linalg.norm(first), rel=1e-8)
+    with pytest.raises(ValueError, match="shapes"):
+        _ = rotor.modes
 
 
 def test_the_count_covers_all_branches() -> None:
