@@ -286,10 +286,8 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``joint_stiffness``.
     """
     B, B1, B2 = (rows.reshape(-1, rows.shape[-1]) for rows in (k.B, k.B1, k.B2))
-    on_M, on_C = c.M, c.C
-    M = B.T @ (on_M @ B)  # (eq. 10)
-    C = B.T @ (2.0 * (on_M @ B1) + on_C @ B)
-    K = B.T @ (on_M @ B2 + on_C @ B1 + c.K @ B)
+    on_bodies = c.M @ B, 2.0 * (c.M @ B1) + c.C @ B, c.M @ B2 + c.C @ B1 + c.K @ B
+    M, C, K = (projected(k, w.reshape(-1, 6, w.shape[-1])) for w in on_bodies)  # (eq. 10)
     j = tree.joints
     K[:j, :j] += joint_stiffness(tree, k, c)
     for s in tree.mechanism.coordinate_springs:
@@ -310,8 +308,10 @@ def joint_stiffness(tree: Tree, k: Kinematics, c: Cartesian) -> Array:
     descends = tree.moves_link[:j, :j] & ~np.eye(j, dtype=bool)
     K = descends.T * (k.J.T[:j] @ force.T)
     rows = np.append(k.B[: len(tree.bodies), :, :j], np.zeros((1, 6, j)), axis=0)
-    strain = (rows[c.ends[:, 1]] - rows[c.ends[:, 0]]).reshape(-1, j)  # exact: columns of both ends cancel
-    K += strain.T @ (c.stiffness @ strain.reshape(-1, 6, j)).reshape(-1, j)
+    for (a, b), stiffness in zip(c.ends, c.stiffness, strict=True):
+        strain = rows[b] - rows[a]  # exact: columns of both ends cancel
+        between = np.flatnonzero(strain.any(axis=0))
+        K[np.ix_(between, between)] += strain[:, between].T @ stiffness @ strain[:, between]
     for s in tree.mechanism.coordinate_springs:
         i = tree.coordinate(s.coordinate)
         K[i, i] += s.stiffness

@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 
 from ..compiled import kernels
 from ..space import spatial as sp
-from .links import gathered, twists
+from .links import twists
 from .topology import Tree
 
 Array = NDArray[np.float64]
@@ -67,9 +67,11 @@ class Kinematics:
 def transformation(tree: Tree, J: Array) -> Array:
     """(b, 6, n) velocity transformation of the bodies from screws J (6, n), or its rates from theirs."""
     n = len(tree.coordinates)
-    unit = np.zeros((n, n, 6))
-    unit[range(n), range(n)] = J.T
-    return _of_links(tree, unit)[:, tree.link + 1].transpose(1, 2, 0)
+    rows = np.zeros((n + 1, 6, n))  # the last one is the ground's, of index −1
+    for link, parent in enumerate(tree.parent.tolist()):
+        rows[link] = rows[parent]
+        rows[link, :, link] = J[:, link]
+    return rows[tree.link]
 
 
 def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
@@ -103,17 +105,20 @@ def _of_links(tree: Tree, relative: Array) -> Array:
 
 
 def carried(tree: Tree, wrenches: Array) -> Array:
-    """(n, 6) total wrench on all bodies that each coordinate moves, from those on the bodies (b, 6)."""
+    """(n, 6, …) total wrench on all bodies that each coordinate moves, from those on the bodies (b, 6, …)."""
     n = len(tree.coordinates)
-    on_links = np.zeros((n + 1, 6))
-    np.add.at(on_links, tree.link + 1, wrenches)
-    return gathered(tree.links, np.zeros((n, 12)), on_links)
+    total = np.zeros((n + 1, *wrenches.shape[1:]))  # the last one is the ground's, of index −1
+    for link, wrench in zip(tree.link.tolist(), wrenches, strict=True):
+        total[link] += wrench
+    for link, parent in reversed([*enumerate(tree.parent.tolist())]):
+        total[parent] += total[link]
+    return total[:n]
 
 
 def projected(k: Kinematics, wrenches: Array, J: Array | None = None) -> Array:
-    """Bᵀ w (n,) for wrenches w (b + m, 6); ``J`` (6, n) replaces the screws if given."""
+    """Bᵀ w (n, …) for wrenches w (b + m, 6, …); ``J`` (6, n) replaces the screws if given."""
     b = len(k.poses)
-    out = np.einsum("in,ni->n", k.J if J is None else J, carried(k.tree, wrenches[:b]))
+    out = np.einsum("in,ni...->n...", k.J if J is None else J, carried(k.tree, wrenches[:b]))
     if len(k.tree.first_internal):
         out[k.tree.first_internal[:, None] + np.arange(6)] += wrenches[b:]
     return out

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ..element.beams import Beams
 from ..mechanism.description import GROUND, Mechanism, MechanismError
 from ..mechanism.length import length_of
-from .links import Links, twists
+from .links import Links
 
 Array = NDArray[np.float64]
 
@@ -85,10 +85,11 @@ class Tree:
     @cached_property
     def moves_link(self) -> NDArray[np.bool_]:
         """(n, n) whether the coordinate of the column moves the link of the row."""
-        n = len(self.coordinates)
-        unit = np.zeros((n, n, 6))
-        unit[range(n), range(n), 0] = 1.0
-        return twists(self.links, unit.reshape(n, -1))[..., 0].T > 0.0
+        rows = np.eye(len(self.coordinates), dtype=bool)
+        for link, parent in enumerate(self.parent.tolist()):
+            if parent >= 0:
+                rows[link] |= rows[parent]
+        return rows
 
     @cached_property
     def moves_body(self) -> NDArray[np.bool_]:
