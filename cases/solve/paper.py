@@ -1,6 +1,8 @@
 """The equations of Park et al. (2010), literally, as a code: the modes of a blade from rigid bodies and massless elements."""
 
+import pickle
 import time
+from functools import lru_cache
 
 import numpy as np
 
@@ -10,7 +12,7 @@ from ...core.element.measures import Measure
 from ...core.mechanism.description import MechanismError
 from ...core.modes import STATIONS, Modes
 from ...core.park2010_input import tree
-from ...core.park2010_modes import linearize, modes, steady
+from ...core.park2010_modes import Linear, linearize, modes, steady
 from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
 from ...core.tree import as_mechanism
@@ -44,11 +46,11 @@ def paper_modes(blade: Blade, omega: float, elements: int, count: int, stiffness
     """
     begun = time.perf_counter()
     chain = discretize(blade, elements, "half_end", stiffness)
-    t = tree(as_mechanism.mechanism(chain, omega))
     try:
-        linear = linearize(t, steady(t))
+        linear = _linear(pickle.dumps(as_mechanism.mechanism(chain, omega)))
     except MechanismError as error:
         raise SteadyStateError(f"omega: no steady state at {omega:.6g} rad/s: {error}") from error
+    t = linear.tree
     try:
         np.linalg.cholesky(0.5 * (linear.K + linear.K.T))
     except np.linalg.LinAlgError:
@@ -62,3 +64,14 @@ def paper_modes(blade: Blade, omega: float, elements: int, count: int, stiffness
     shapes = np.array([[np.interp(STATIONS, s, part) for part in mode.T] for mode in at_nodes.transpose(2, 0, 1)])
     seconds = time.perf_counter() - begun
     return Modes(omega, np.abs(values), shapes.transpose(0, 2, 1), chain.elements, seconds=seconds)
+
+
+@lru_cache(maxsize=2)
+def _linear(mechanism: bytes) -> Linear:
+    """The linear equations of a pickled mechanism. Faults seeded in the solver ask for the same ones again.
+
+    Raises:
+        MechanismError: no convergence.
+    """
+    t = tree(pickle.loads(mechanism))
+    return linearize(t, steady(t))
