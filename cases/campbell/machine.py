@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.rotor.periodic import PeriodicError
-from ...core.rotor.turbine import Resolution, Turbine, machine
+from ...core.rotor.turbine import FINER, Resolution, Turbine, machine
 from ...core.rotor.turbine_modes import TurbineModes, tracked, turbine_modes
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from .required import TEN_PERCENT, RequiredMargin
@@ -18,9 +18,6 @@ Array = NDArray[np.float64]
 
 SPARE = 4
 """Modes solved above those requested, so that each finds its successor."""
-
-FINER = Resolution(24, 48, 14, 20)
-"""The resolution with which the first and the last speed are compared."""
 
 SAFETY = 3.0
 """Factor from a change under refinement to the uncertainty of a frequency."""

@@ -44,6 +44,7 @@ class Request:
         codes: names or import paths of codes; None for all.
         rpm, omega: rotor speeds of blade files as text, in rpm or rad/s.
         mount: mounting of blade files.
+        blade_only: whether a turbine's file stands for one of its blades, clamped at the hub.
         changes: changes of every blade's properties, as text: ``EI_flap=*1.1``.
         add: results of other programs and measurements: ``NAME=FILE.csv``.
         data_uncertainty, input_uncertainty: of measured rows without one, as text: ``1%``.
@@ -59,6 +60,7 @@ class Request:
     rpm: str | None = None
     omega: str | None = None
     mount: Mount = field(default_factory=Mount)
+    blade_only: bool = False
     changes: tuple[str, ...] = ()
     add: tuple[str, ...] = ()
     data_uncertainty: str | None = None
@@ -116,6 +118,8 @@ def _options(request: Request) -> Iterator[str]:
             yield f"{option}={value}"  # a value may begin with a minus sign
     if mount.offsets is not None:
         yield "--offsets" if mount.offsets else "--no-offsets"
+    if request.blade_only:
+        yield "--blade-only"
     yield from (word for change in request.changes for word in ("--set", change))
     yield from (word for text in request.add for word in ("--add", text))
     for option, value, usual in (

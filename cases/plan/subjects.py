@@ -7,14 +7,15 @@ from pathlib import Path
 from msgspec.structs import replace as replaced
 
 from ..input import changes as blade_changes
-from ..input import library, mechanisms, readers
+from ..input import files, library, mechanisms, readers
 from ..input.changes import Change
 from ..input.default_case import default_case
 from ..input.errors import CaseError
 from ..input.library import is_blade_file
 from ..input.readers import BladeFile, Mount
+from ..input.readers.openfast import turbine as turbine_reader
 from ..input.schema import Case
-from . import mechanism
+from . import mechanism, turbine
 from .blade import blades
 from .request import Request, speeds
 from .subject import Subject
@@ -30,7 +31,7 @@ def subjects(request: Request, note: Callable[[str], None]) -> list[Subject]:
     edits = [blade_changes.parse(text) for text in request.changes]
     asked = request.subjects
     unique = [s for k, s in enumerate(asked) if not isinstance(s, str) or s not in asked[:k]] or _everything(note)
-    chosen = [_changed(_read(subject, decks, request.mount), edits) for subject in unique]
+    chosen = [_changed(_read(subject, decks, request), edits) for subject in unique]
     if not any(isinstance(s, str) and is_blade_file(s) for s in unique) and (decks or request.mount != Mount()):
         raise CaseError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
@@ -38,15 +39,30 @@ def subjects(request: Request, note: Callable[[str], None]) -> list[Subject]:
     return [part for case in chosen for part in (blades(case) if isinstance(case, Case) else [case])]
 
 
-def _read(subject: str | Case | Subject, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case | Subject:
-    """A case of blades or a mechanism, by name or file; or the default case of a blade file."""
+def _read(
+    subject: str | Case | Subject, decks: tuple[tuple[float, ...], bool] | None, request: Request
+) -> Case | Subject:
+    """A case of blades or a mechanism, by name or file; or the default case of a turbine's or a blade's file."""
     if not isinstance(subject, str):
         return subject
     if is_blade_file(subject):
-        return _of_blade_file(subject, decks, mount)
+        if not request.blade_only and (whole := _turbine(subject, decks, request.mount)):
+            return whole
+        return _of_blade_file(subject, decks, request.mount)
     if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
         return mechanism.subject(library.mechanism(subject))
     return library.select(subject)
+
+
+def _turbine(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> turbine.TurbineSubject | None:
+    """The turbine in a file, at the given speeds or that of the file; None if the file is not that of a turbine."""
+    path = Path(name)
+    with files.reading(path, deck=True):
+        if not turbine_reader.is_turbine(path):
+            return None
+        reading = turbine_reader.read(path, mount)
+    at, rpm = decks or ((reading.speed,), True)
+    return turbine.subject(path, reading.turbine, reading.source, at, rpm)
 
 
 def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case:

@@ -38,7 +38,7 @@ def refined_code(
         return of_blades(answers(name, blade, runs, limits, head.version))
 
     count = max(r.core.count for _, r in core)
-    refinements = solve(ask, [omega for omega, _ in core], refining, count, _compared(core))
+    refinements = solve(ask, [omega for omega, _ in core], refining, count, compared_with(core))
     cells, levels = joined(
         refined(head, omega, r, s, refining.order, refining.bracket)
         for (omega, r), s in zip(core, refinements, strict=True)
@@ -58,7 +58,7 @@ def as_in_source(head: Head, blade: Blade, source: Discretisation, core: Referen
 
     refining = core_solver.as_given(source)
     count = max(r.core.count for _, r in core)
-    refinements = solve(ask, [omega for omega, _ in core], refining, count, _compared(core))
+    refinements = solve(ask, [omega for omega, _ in core], refining, count, compared_with(core))
     return joined(
         given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, refinements, strict=True)
     )
@@ -111,7 +111,7 @@ def papers_equations(head: Head, blade: Blade, elements: int, core: References) 
     return same(head, omega, reference, literal, core_answer)
 
 
-def _compared(core: References) -> Callable[[float, Sequence[Spectrum]], Compared]:
+def compared_with(core: References) -> Callable[[float, Sequence[Spectrum]], Compared]:
     """The modes requested from a solver: core's modes, whatever the solver answered."""
     by_speed = {omega: r.core.compared for omega, r in core}
     return lambda omega, _: by_speed[omega]

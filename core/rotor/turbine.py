@@ -95,6 +95,10 @@ class Resolution:
     blade_modes: int = 12
 
 
+FINER = Resolution(24, 48, 14, 20)
+"""The resolution with which the default one is compared."""
+
+
 @dataclass(frozen=True)
 class Assembled:
     """The turbine's equations at a speed, in the ground's frame and multi-blade coordinates.

@@ -29,8 +29,9 @@ def command(
     changes: Changes = (),
     fresh: bool = False,
     mounting: Mounting | None = None,
+    blade_only: bool = False,
 ) -> int:
-    """Solve blades with every code, compare the results and write a report.
+    """Solve blades and turbines with every code, compare the results and write a report.
 
     Writes results.jsonl (one row per cell), report.md and figures. Status 1 if a cell fails or is inconclusive, if nothing was
     compared, if fewer independent groups confirm a blade than its case requires, or if a seeded fault is not detected.
@@ -41,8 +42,9 @@ def command(
     Parameters
     ----------
     case
-        Blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name (`southwell cases`), one blade of a case as
-        `case/blade`, or case files (TOML). Default: all cases. Of a blade file, the lowest six modes are compared.
+        A turbine's primary file (.fst), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name
+        (`southwell cases`), one blade of a case as `case/blade`, or case files (TOML). Default: all cases. Of a turbine, the
+        lowest eight modes are compared, of a blade the lowest six.
     codes
         Names separated by commas (`southwell codes`), or import paths `module:attribute`. Default: all codes.
     out
@@ -79,6 +81,8 @@ def command(
         pitch. May be repeated.
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
+    blade_only
+        Verify one blade of a turbine's primary file, clamped at the hub, instead of the whole turbine.
     """
     execution = Execution(cluster_workers(workers, scheduler), scheduler, out=out, fresh=fresh)
     request = Request(
@@ -87,6 +91,7 @@ def command(
         rpm=rpm,
         omega=omega,
         mount=(mounting or Mounting()).mount(),
+        blade_only=blade_only,
         changes=changes,
         add=add,
         data_uncertainty=data_uncertainty,

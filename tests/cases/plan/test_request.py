@@ -20,6 +20,7 @@ EVERYTHING = Request(
     codes=("exact-beam", "module:CODE"),
     rpm="0:12.1:1.1",
     mount=Mount(Path("main file.dat"), 61.5, 1.5, radians(-2.5), radians(0.1), (5, 1), (1.057344, 1.0, 1.0), False),
+    blade_only=True,
     changes=("EI_flap=*1.1", "tip_mass=*0.5"),
     add=("rig=a file.csv", "other=b.csv"),
     data_uncertainty="1%",

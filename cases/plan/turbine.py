@@ -1,0 +1,153 @@
+"""A turbine as a subject: solved at several rotor speeds by every code that accepts turbines, compared with core."""
+
+import re
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+from scipy.integrate import trapezoid
+
+from ...core.blade import Blade
+from ...core.effects import ALL_EFFECTS
+from ...core.rotor.turbine import Turbine
+from ...references.protocol.description import Description
+from ...references.protocol.process import Limits
+from ..input.readers.source import Source
+from ..judge.cells import Head
+from ..judge.results import Setting
+from ..judge.verdict import unsigned
+from ..solve.reference import References
+from ..solve.refinement import Refining
+from ..solve.turbine import MOTION, references, refined_code
+from .column import Column, absent_work, failing_work, not_installed
+from .settings import NOT_USED
+from .subject import NOT_CHECKED, PropertyChecks
+from .user_results import UserResults
+
+MODES, TARGET = 8, 1e-3
+"""Number of modes compared, from the lowest, and the largest relative difference."""
+
+
+@dataclass(frozen=True)
+class TurbineSubject:
+    """A turbine with its speeds; see ``Subject``.
+
+    Attributes:
+        name: in the results.
+        path: of its file.
+        turbine: as every code is given it.
+        points: rotor speeds, rad/s, ascending.
+        rpm: whether reports give speeds in rpm and frequencies in Hz.
+        source: its files, and what was read from them.
+        title, description: of the report.
+        modes: number of modes compared, from the lowest.
+        target: largest relative difference.
+        groups: number of independent groups that must confirm it.
+        time_limit: of one solution by a foreign code, s.
+    """
+
+    name: str
+    path: str
+    turbine: Turbine
+    points: tuple[float, ...]
+    rpm: bool
+    source: Source
+    title: str = ""
+    description: str = ""
+    modes: int = MODES
+    target: float = TARGET
+    groups: int = 1
+    time_limit: float = 300.0
+
+    @property
+    def cells(self) -> int:
+        """See ``Subject``."""
+        return self.modes
+
+    @property
+    def tables(self) -> tuple[str, ...]:
+        """See ``Subject``."""
+        return ()
+
+    @property
+    def blade(self) -> None:
+        """See ``Subject``."""
+        return None
+
+    def setting(self) -> Setting:
+        """See ``Subject``."""
+        files = ", ".join(path.name for path in self.source.files)
+        return Setting(
+            case=self.name,
+            title=self.title or f"The turbine {self.turbine.name}",
+            description=self.description
+            or f"The lowest {self.modes} modes of the whole turbine, each to be confirmed within {100 * self.target:g} %.",
+            source="; ".join((f"{self.source.format}: {files}", f"axes: {self.source.axes}", *self.source.notes)),
+            unit="rpm" if self.rpm else "rad_s",
+            facts=self._facts(),
+            groups=self.groups,
+            lacking="",
+            target=self.target,
+        )
+
+    def _facts(self) -> dict[str, str]:
+        turbine, drive = self.turbine, self.turbine.drivetrain
+        speeds = np.array(self.points) * (30 / np.pi if self.rpm else 1.0)
+        facts = {
+            "tower": f"{turbine.tower.length:g} m, {_mass(turbine.tower):.6g} kg",
+            "nacelle": f"{turbine.nacelle[0, 0]:.6g} kg",
+            "hub": f"{turbine.hub[0, 0]:.6g} kg",
+            "blades": f"{turbine.blades} of {turbine.blade.length:g} m, {_mass(turbine.blade):.6g} kg each",
+            "yaw bearing": "locked" if np.isinf(turbine.yaw) else f"{turbine.yaw:.6g} N m/rad",
+            "shaft": "rigid" if np.isinf(drive.stiffness) else f"{drive.stiffness:.6g} N m/rad",
+            "generator": "free" if drive.free else "locked",
+            "speeds": ", ".join(f"{v:.6g}" for v in speeds) + (" rpm" if self.rpm else " rad/s"),
+            "modes compared": f"the lowest {self.modes}, seen from the ground",
+            "target": unsigned(self.target),
+        }
+        if self.source.unused:
+            facts[NOT_USED] = "; ".join(str(u).removeprefix("not used: ") for u in self.source.unused)
+        return facts
+
+    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+        """A column for each code that solves turbines; the others have none, unless there are no other codes."""
+        takers = [code for code in codes if code.turbines or (code.failure and len(codes) == 1)]
+        return [self._column(code, limits) for code in takers or codes]
+
+    def _column(self, code: Description, limits: Limits) -> Column:
+        head = Head(self.name, code.name, code.version or "", "code", self.target, code.shares, (MOTION,))
+        if code.failure:
+            return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure), solves=False)
+        if not code.turbines:
+            absent = absent_work(head, "not applicable", "the code does not take turbines")
+            return Column(code.name, ALL_EFFECTS, head, absent, solves=False)
+        if code.version is None:
+            return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)), solves=False)
+        refining = Refining(code.levels, code.order, code.finest or code.levels[-1])
+        work = partial(refined_code, head, code.asked, self.turbine, refining, limits)
+        return Column(code.name, ALL_EFFECTS, head, work, code.independence)
+
+    def references(self, columns: Sequence[Column]) -> Callable[[], References]:
+        """See ``Subject``."""
+        return partial(references, self.turbine, self.points, self.modes)
+
+    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
+        """See ``Subject``."""
+        return NOT_CHECKED
+
+    def error_budget(self) -> None:
+        """See ``Subject``."""
+        return None
+
+
+def subject(path: Path, turbine: Turbine, source: Source, points: Sequence[float], rpm: bool) -> TurbineSubject:
+    """A turbine that is given only by its file, at these speeds, rad/s."""
+    name = re.sub(r"[^a-z0-9.-]+", "-", path.stem.lower()).strip("-.") or "turbine"
+    return TurbineSubject(name, str(path), turbine, tuple(points), rpm, source)
+
+
+def _mass(beam: Blade) -> float:
+    """Mass of a beam and the body at its tip, kg."""
+    return float(trapezoid(beam.mass[:, 0, 0], beam.stations) + beam.tip_mass[0, 0])
