@@ -8,7 +8,7 @@ The rules that an adapter follows are those of ``BladeAdapter`` and ``MechanismA
 """
 
 from .core import multibody
-from .core.blade import Blade, clamped, coupled, mass_at, sample, stiffness_at, straight, twist_at, uniform
+from .core.blade import Blade, clamped, coupled, straight, uniform
 from .core.effects import Effects
 from .core.mechanism.description import Mechanism
 from .core.modes import STATIONS, Modes
@@ -23,6 +23,7 @@ from .references.protocol.interface import (
     MechanismModes,
 )
 from .references.protocol.turbines import TurbineAdapter, TurbineModes
+from .references.sampling import mass_at, sample, stiffness_at, twist_at
 
 __all__ = [
     "CORE",

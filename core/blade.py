@@ -18,7 +18,8 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .blade_checks import ROOT_TOLERANCE, BladeError, check
+from .blade_checks import ROOT_TOLERANCE, check
+from .blade_checks import BladeError as BladeError
 from .space.inertia import about_centre
 from .space.spatial import skew
 
@@ -150,76 +151,6 @@ def uniform_blade(
         stiffness=np.repeat(section_stiffness(EA, GJ, EI_y, EI_z, GA_y, GA_z), 2, axis=0),
         mass=np.repeat(section_mass(mass, I_y, I_z), 2, axis=0),
     )
-
-
-@dataclass(frozen=True)
-class Sections:
-    """Properties of uncoupled sections at k arc lengths, each (k,), in section (twisted) axes; SI units."""
-
-    EA: Array
-    GA_y: Array
-    GA_z: Array
-    GJ: Array
-    EI_y: Array
-    EI_z: Array
-    mass: Array
-    I_x: Array
-    I_y: Array
-    I_z: Array
-    twist: Array
-
-
-def sample(blade: Blade, s: ArrayLike) -> Sections:
-    """Engineering properties at arc lengths ``s`` (m).
-
-    Raises:
-        BladeError: the sections are coupled (see ``coupled``), which these properties do not describe.
-    """
-    if coupled(blade):
-        raise BladeError(
-            f"{blade.name}: coupled sections (off-diagonal entries); this code accepts uncoupled sections only"
-        )
-    k, m = stiffness_at(blade, s), mass_at(blade, s)
-    d, e = np.diagonal(k, axis1=1, axis2=2), np.diagonal(m, axis1=1, axis2=2)
-    return Sections(
-        EA=d[:, 0],
-        GA_y=d[:, 1],
-        GA_z=d[:, 2],
-        GJ=d[:, 3],
-        EI_y=d[:, 4],
-        EI_z=d[:, 5],
-        mass=e[:, 0],
-        I_x=e[:, 3],
-        I_y=e[:, 4],
-        I_z=e[:, 5],
-        twist=twist_at(blade, s),
-    )
-
-
-def stiffness_at(blade: Blade, s: ArrayLike) -> Array:
-    """Section stiffness (k, 6, 6) at arc lengths ``s``; rigid strains stay ``inf``."""
-    rigid = np.isinf(blade.stiffness).any(0)
-    finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
-    out = _interpolate(blade.stations, finite, s)
-    out[:, rigid] = np.inf
-    return out
-
-
-def mass_at(blade: Blade, s: ArrayLike) -> Array:
-    """Section mass per length (k, 6, 6) at arc lengths ``s``."""
-    return _interpolate(blade.stations, blade.mass, s)
-
-
-def twist_at(blade: Blade, s: ArrayLike) -> Array:
-    """Structural twist (k,) at arc lengths ``s``, rad."""
-    return np.interp(np.atleast_1d(s), blade.stations, blade.twist)
-
-
-def _interpolate(stations: Array, values: Array, s: ArrayLike) -> Array:
-    s = np.atleast_1d(np.asarray(s, float))
-    k = np.clip(np.searchsorted(stations, s, side="right") - 1, 0, len(stations) - 2)
-    t = ((s - stations[k]) / (stations[k + 1] - stations[k]))[:, None, None]
-    return (1 - t) * values[k] + t * values[k + 1]
 
 
 def coupled(blade: Blade) -> bool:

@@ -20,9 +20,10 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from . import curve, gauss
-from .blade import Blade, mass_at
+from .blade import Blade
 from .element.sections import frames, root
 from .modes import STATIONS, Modes
+from .sampling import mass_at
 from .space.inertia import about_centre
 
 Array = NDArray[np.float64]

@@ -6,7 +6,8 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, TORSION, Blade, stiffness_at, straight
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, TORSION, Blade, straight
+from ...core.sampling import stiffness_at
 from ...core.space.inertia import about_centre
 from ...core.space.spatial import skew
 

@@ -18,14 +18,12 @@ from ...core.blade import (
     TORSION,
     Blade,
     BladeError,
-    mass_at,
     section_mass,
     section_stiffness,
-    stiffness_at,
-    twist_at,
     uniform_blade,
 )
 from ...core.blade_checks import MAX_LENGTH
+from ...core.sampling import mass_at, stiffness_at, twist_at
 from ...core.space import spatial as sp
 from . import files
 from .errors import CaseError, nearest

@@ -15,8 +15,9 @@ from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
 from ...core import gauss
-from ...core.blade import Blade, mass_at, twist_at
+from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
+from ...core.sampling import mass_at, twist_at
 from .spectrum import Spectrum, on_common
 
 Array = NDArray[np.float64]

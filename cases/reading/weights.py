@@ -1,8 +1,7 @@
 """Compare mass, inertia and tip flexibility of a code's own model with a quadrature of the stations that does not use core.
 
-Every code samples the stations through ``core.blade``; a model that is too heavy is therefore an error that all share, and
-their frequencies agree. Lumped masses converge with the square of the element size: a second number of elements removes
-that part.
+A code whose model is too heavy or too soft is named before its frequencies are compared, with the property that is wrong.
+Lumped masses converge with the square of the element size: a second number of elements removes that part.
 """
 
 from collections.abc import Sequence

@@ -5,10 +5,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...core.blade import Blade, sample, uniform
+from ...core.blade import Blade, uniform
 from ...core.effects import Effects
 from ...references.protocol.worker import Run
 from ...references.published import Datum, Series, label, load
+from ...references.sampling import sample
 from ..input.schema import Discretisation
 from ..judge.cells import Head
 from ..judge.convergence import follow

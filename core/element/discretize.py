@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import curve
-from ..blade import Blade, clamped, mass_at
+from ..blade import Blade, clamped
 from ..modes import STATIONS
+from ..sampling import mass_at
 from ..space import spatial as sp
 from ..space.inertia import transformed
 from . import beams as bm

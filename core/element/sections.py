@@ -21,7 +21,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import curve, gauss
-from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, stiffness_at, straight, twist_at
+from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, straight
+from ..sampling import stiffness_at, twist_at
 from ..space import spatial as sp
 
 Array = NDArray[np.float64]

@@ -4,7 +4,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.integrate import trapezoid
 
-from ..blade import Blade, mass_at, stiffness_at
+from ..blade import Blade
+from ..sampling import mass_at, stiffness_at
 
 Array = NDArray[np.float64]
 

@@ -19,12 +19,13 @@ import numpy as np
 from scipy import sparse
 from scipy.interpolate import CubicHermiteSpline
 
-from ...core.blade import BEND_Y, BEND_Z, Blade, sample, uniform
+from ...core.blade import BEND_Y, BEND_Z, Blade, uniform
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import BladeAdapter, Independence, Motion
 from ..protocol.quadratic import gyroscopic_modes
+from ..sampling import sample
 from . import system as ex
 
 ROUNDING = 2e-15

@@ -24,25 +24,13 @@ from scipy.interpolate import CubicSpline
 from scipy.sparse.linalg import spsolve
 from scipy.spatial.transform import Rotation
 
-from ...core import gauss
-from ...core.blade import (
-    AXIAL,
-    BEND_Y,
-    BEND_Z,
-    COUPLING_ROUNDING,
-    SHEAR_Y,
-    SHEAR_Z,
-    TORSION,
-    Blade,
-    clamped,
-    mass_at,
-    stiffness_at,
-)
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, COUPLING_ROUNDING, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
 from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..protocol.quadratic import gyroscopic_modes
+from ..sampling import mass_at, points, stiffness_at
 from ..theories.reference_line import JUMP, element_ends, line, moments
 from . import system as ex
 
@@ -173,7 +161,7 @@ def _stiffness(blade: Blade, ends: Array) -> Array:
     In elements far shorter than the others, which only a short soft part has, the rounding of positions times ``12 EI/h²``
     would matter: h is then the mean length, so that the error is still of second order.
     """
-    s, weight = gauss.between(ends, 3)
+    s, weight = points(ends, 3)
     h = np.diff(ends)
     bending_length = np.where(h > JUMP * blade.length, h, blade.length / len(h))
     diagonal = np.diagonal(stiffness_at(blade, s.ravel()), axis1=1, axis2=2).reshape(*s.shape, 6)
@@ -185,7 +173,7 @@ def _stiffness(blade: Blade, ends: Array) -> Array:
 
 def _masses(blade: Blade, ends: Array) -> Array:
     """(n, 4, 4) sections' and tip's mass, shared by the ends of each element as by a lever."""
-    s, weight = gauss.between(ends, 3)
+    s, weight = points(ends, 3)
     section = moments(mass_at(blade, s.ravel())).reshape(*s.shape, 4, 4)
     right = (s - ends[:-1, None]) / np.diff(ends)[:, None]
     out = np.zeros((len(ends), 4, 4))

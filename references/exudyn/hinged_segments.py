@@ -22,9 +22,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 
-from ...core import gauss
-from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped, mass_at, stiffness_at
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped
 from ...core.space.spatial import skew
+from ..sampling import mass_at, points, stiffness_at
 from ..theories.reference_line import element_ends, line, root_axes
 from ..theories.spectral import intervals
 
@@ -126,7 +126,7 @@ def _ends(blade: Blade, elements: int, omega: float) -> Array:
     ends = element_ends(blade, elements, INTERVALS)
     if not omega or not clamped(blade) or len(intervals(blade)) > 2:
         return ends
-    s, weight = (part.ravel() for part in gauss.between(blade.stations, 3))
+    s, weight = (part.ravel() for part in points(blade.stations, 3))
     mass = np.append(weight * mass_at(blade, s)[:, 0, 0], blade.tip_mass[0, 0])
     level = np.cos(blade.precone)
     tension = omega**2 * level * mass @ (blade.hub_radius + level * np.append(s, blade.length))
@@ -156,7 +156,7 @@ def _pieces(blade: Blade, ends: Array) -> Array:
 
 def _hinges(blade: Blade, ends: Array) -> Array:
     """(e,) arc lengths of the centroid of each element's bending compliance."""
-    s, weight = (part.ravel() for part in gauss.between(_pieces(blade, ends), 3))
+    s, weight = (part.ravel() for part in points(_pieces(blade, ends), 3))
     bend = weight * (1.0 / np.diagonal(stiffness_at(blade, s), axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]]).sum(1)
     element, total = np.searchsorted(ends, s) - 1, np.zeros((2, len(ends) - 1))
     np.add.at(total[0], element, bend)
@@ -169,7 +169,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
 
     The two joints of a strain add up to it; their difference has the same stiffness.
     """
-    s, weight = (part.ravel() for part in gauss.between(_pieces(blade, ends), 3))
+    s, weight = (part.ravel() for part in points(_pieces(blade, ends), 3))
     element = np.searchsorted(ends, s) - 1
     strains = np.unique(hinge)
     section = np.linalg.inv(stiffness_at(blade, s)[:, strains[:, None], strains])
@@ -192,7 +192,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
 def _segments(blade: Blade, hinges: Array, position: Array, axes: Array) -> tuple[Array, Array, Array]:
     """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of the segment from each hinge to the next, or to the tip."""
     ends = np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]])
-    s, weight = (part.ravel() for part in gauss.between(ends, 3))
+    s, weight = (part.ravel() for part in points(ends, 3))
     body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
     s = np.append(s, blade.length)
     hinge = np.searchsorted(hinges, s) - 1

@@ -16,10 +16,11 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from ...core.blade import Blade, clamped, coupled, mass_at, sample, straight
+from ...core.blade import Blade, clamped, coupled, straight
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion
+from ..sampling import mass_at, sample
 from ..theories.grading import element_ends
 from ..theories.spectral import gauss, intervals
 from . import FRAME3DD, ask

@@ -6,7 +6,7 @@ displacements and rotation vectors quadratic in between, reduced integration, an
 fourth order for uniform blades, second order where properties vary. Each element has the mean compliance and mass of
 its part of the blade.
 
-Core gives the positions and axes of the sections (``core.element.sections.frames``). Beam, inertia, steady state and
+Positions and axes of the sections are those of the adapters' reference line. Beam, inertia, steady state and
 linearisation are SHARPy's. Twist is included in the elements' stiffness and mass, not in their axes, because SHARPy
 does not allow axes to jump between elements, and a blade's may. Rigid shears are given a large stiffness.
 """
@@ -20,13 +20,14 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 from scipy.spatial.transform import Rotation
 
-from ...core.blade import BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped, mass_at, stiffness_at
+from ...core.blade import BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
-from ...core.element import sections
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
-from ..protocol.interface import CORE, BladeAdapter, Independence
+from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence
 from ..protocol.quadratic import gyroscopic_modes
+from ..sampling import mass_at, stiffness_at
+from ..theories.reference_line import line
 from ..theories.spectral import gauss, intervals
 from . import SHARPY, ask
 
@@ -49,7 +50,7 @@ class Sharpy(BladeAdapter):
 
     name = "sharpy"
     title = "SHARPy, geometrically exact beam"
-    independence = Independence("SHARPy", "geometrically exact beam", "SHARPy", sections=CORE)
+    independence = Independence("SHARPy", "geometrically exact beam", "SHARPy", sections=REFERENCE_LINE)
     effects = ALL_EFFECTS
     levels = (INTERVALS, 2 * INTERVALS, 4 * INTERVALS)
     order = 2
@@ -109,13 +110,13 @@ def nodes(spans: Array) -> Array:
 def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
     """The request for the script in SHARPy's environment; ``spans`` (e, 2) are the arc lengths of the elements' ends, m."""
     untwisted = replace(blade, twist=np.zeros_like(blade.twist))
-    frame = sections.frames(untwisted, nodes(spans))
-    position, psi = frame[:, :3, 3], Rotation.from_matrix(frame[:, :3, :3]).as_rotvec()
+    position, axes = _frames(untwisted, nodes(spans))
+    psi = Rotation.from_matrix(axes).as_rotvec()
     length = np.diff(spans).ravel()
     at, weight = (np.concatenate(part) for part in zip(*(gauss(span, 3) for span in spans), strict=True))
     share = (weight / np.repeat(length, 3))[:, None, None]
-    level = np.swapaxes(sections.frames(untwisted, at), 1, 2)
-    twist = np.kron(np.eye(2), (level @ sections.frames(blade, at))[:, :3, :3])
+    level = np.swapaxes(_frames(untwisted, at)[1], 1, 2)
+    twist = np.kron(np.eye(2), level @ _frames(blade, at)[1])
     stiffness = stiffness_at(blade, at)
     bending = np.diagonal(stiffness, axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]].max(1) / blade.length**2
     stiffness = np.where(np.isinf(stiffness), RIGID * bending[:, None, None], stiffness)
@@ -132,6 +133,12 @@ def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
         "tip": blade.tip_mass,
     }
     return {"omega": omega, **{name: value.tolist() for name, value in arrays.items()}}
+
+
+def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
+    """Positions (k, 3), m, and axes (k, 3, 3) of sections, in the hub's axes."""
+    at = line(blade, s[:, None])
+    return at.position[:, 0], at.axes[:, 0]
 
 
 def _unpacked(text: str) -> Array:

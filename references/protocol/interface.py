@@ -61,8 +61,8 @@ class Independence:
         theory: the derivation and discretisation of the matrices, e.g. ``ANCF cable``.
         rotation: origin of the centrifugal and gyroscopic terms.
         sections: origin of the sections' positions and axes: ``blade`` (a straight axis, twist and pitch as given),
-            ``REFERENCE_LINE``, or core's frames. Stiffness and mass are interpolated between stations by ``core.blade`` in all;
-            ``BladeAdapter.fingerprint`` checks the mass.
+            ``REFERENCE_LINE``, or core's frames. All but those with core's discretisation interpolate stiffness and mass
+            between stations by ``references.sampling``, not by core; ``BladeAdapter.fingerprint`` checks the mass.
         eigensolver: what solves the eigenproblem.
     """
 

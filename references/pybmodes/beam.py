@@ -27,11 +27,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicHermiteSpline, CubicSpline
 
-from ...core.blade import Blade, clamped, coupled, sample, straight
+from ...core.blade import Blade, clamped, coupled, straight
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.fingerprint import Fingerprint, of_points
 from ..protocol.interface import BladeAdapter, CodeError, Independence, Motion, extra
+from ..sampling import sample
 from ..theories.grading import element_ends
 from .input_file import write
 

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import Blade, sample
+from ...core.blade import Blade
+from ..sampling import sample
 
 Array = NDArray[np.float64]
 

@@ -11,7 +11,8 @@ import numpy as np
 import scipy.sparse as sp
 from numpy.typing import NDArray
 
-from ...core.blade import Blade, mass_at, stiffness_at
+from ...core.blade import Blade
+from ..sampling import mass_at, stiffness_at
 from ..theories.reference_line import line, moments, root_axes
 from . import reissner_forms as forms
 from .assembly import bilinear, skfem

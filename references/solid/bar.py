@@ -17,10 +17,11 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import BEND_Y, BEND_Z, Blade, Sections, sample, uniform
+from ...core.blade import BEND_Y, BEND_Z, Blade, uniform
 from ...core.modes import Modes
 from ..protocol.cache_last import cache_last
 from ..protocol.interface import CodeError
+from ..sampling import Sections, sample
 from .materials import Orthotropic
 from .mesh import Bricks, blade
 

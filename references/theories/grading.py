@@ -3,7 +3,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import Blade, sample
+from ...core.blade import Blade
+from ..sampling import sample
 from .spectral import intervals
 
 Array = NDArray[np.float64]

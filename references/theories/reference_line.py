@@ -1,9 +1,8 @@
 """A blade's reference line for finite elements: positions, tangents, section axes, and moments of the sections' mass.
 
-The data of ``core.blade.Blade`` are evaluated independently of core. Shared with core are the description (a cubic
-spline of the arc length through the stations of each piece between kinks; sections rotated about the tangent by the
-twist) and the linear interpolation of the tables (``stiffness_at``, ``mass_at``, ``twist_at``), but not frames,
-quadrature or inertia.
+The data of ``core.blade.Blade`` are evaluated independently of core. Shared with core is only the description: a cubic
+spline of the arc length through the stations of each piece between kinks, sections rotated about the tangent by the
+twist, properties linear between stations (``references.sampling``).
 """
 
 from dataclasses import dataclass
@@ -13,8 +12,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
-from ...core import gauss
-from ...core.blade import Blade, stiffness_at, straight, twist_at
+from ...core.blade import Blade, straight
+from ..sampling import points, stiffness_at, twist_at
 from .spectral import intervals
 
 Array = NDArray[np.float64]
@@ -117,7 +116,7 @@ def _flat(blade: Blade, ends: Array) -> NDArray[np.bool_]:
     """
     k = np.diagonal(stiffness_at(blade, ends), axis1=1, axis2=2)
     first, last = k[:-1, np.isfinite(k[0])], k[1:, np.isfinite(k[0])]
-    h, x, w = np.diff(ends)[:, None], *gauss.rule(3)
+    h, (x,), (w,) = np.diff(ends)[:, None], *points([0.0, 1.0], 3)
     growth = last / first - 1.0
     exact = h / first * np.divide(np.log1p(growth), growth, out=np.ones_like(growth), where=growth != 0.0)
     computed = h * (w / (first[..., None] + (last - first)[..., None] * x)).sum(-1)

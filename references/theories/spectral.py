@@ -12,7 +12,7 @@ from numpy.polynomial import legendre
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
-from ...core.gauss import between
+from ..sampling import points
 
 Array = NDArray[np.float64]
 
@@ -32,7 +32,7 @@ def intervals(blade: Blade) -> Array:
 
 def gauss(ends: Array, count: int) -> tuple[Array, Array]:
     """Gauss points and weights (k·count,) with ``count`` in each of the intervals between ``ends`` (k+1,)."""
-    s, weight = between(ends, count)
+    s, weight = points(ends, count)
     return s.ravel(), weight.ravel()
 
 

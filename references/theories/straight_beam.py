@@ -7,9 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import PPoly
 
-from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, Sections, clamped, coupled, sample, straight
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped, coupled, straight
 from ..protocol.fingerprint import Fingerprint, of_points
 from ..protocol.interface import BladeAdapter
+from ..sampling import Sections, sample
 from .spectral import gauss, intervals
 
 Array = NDArray[np.float64]

@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 from beamfreq import Beam, frequencies
 
-from southwell.core.blade import Blade, clamped, coupled, sample, straight
+from southwell.core.blade import Blade, clamped, coupled, straight
+from southwell.references.sampling import sample
 
 
 def solve(blade: Blade, omega: float, elements: int, count: int, **options):

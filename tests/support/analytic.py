@@ -8,11 +8,12 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.optimize import root_scalar
 
-from southwell.core.blade import Blade, sample
+from southwell.core.blade import Blade
 from southwell.core.effects import ALL_EFFECTS, Effects
 from southwell.core.modes import STATIONS, Modes
 from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CORE, MOTIONS, BladeAdapter, Independence, Motion
+from southwell.references.sampling import sample
 
 ROOTS = [
     root_scalar(lambda x: np.cos(x) + 1.0 / np.cosh(x), bracket=((k + 0.5) * np.pi - 1.0, (k + 0.5) * np.pi + 1.0)).root

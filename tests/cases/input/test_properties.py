@@ -10,7 +10,8 @@ from scipy.integrate import trapezoid
 
 from southwell.cases.input import library
 from southwell.cases.input.properties import about_hub, about_root, sections, tip
-from southwell.core.blade import Blade, mass_at, section_mass, section_stiffness
+from southwell.core.blade import Blade, section_mass, section_stiffness
+from southwell.core.sampling import mass_at
 
 from ...core.element.test_reference_axis import about
 

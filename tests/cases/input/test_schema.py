@@ -9,9 +9,9 @@ from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount, southwell_toml
 from southwell.cases.input.schema import read, speed_range
-from southwell.core.blade import sample
 from southwell.core.solve import modes
 from southwell.references import published
+from southwell.references.sampling import sample
 
 GOOD = """
 name = "mine"

@@ -15,7 +15,7 @@ from southwell.cases.plan.subjects import subjects
 from southwell.cases.solve import properties as tasks
 from southwell.cases.store import results_file
 from southwell.cases.verify.pipeline import verify
-from southwell.core import blade as core_blade
+from southwell.core import sampling as core_sampling
 from southwell.core.blade import Blade
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
@@ -130,18 +130,16 @@ def test_a_csv_is_read_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     assert not [c for c in wrong if c.quantity == "fingerprint"], "the models are those of the blade as read"
 
 
-def test_a_wrong_sampling_is_named_for_every_model(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    interpolate = core_blade._interpolate
+def test_a_wrong_sampling_of_core_is_named_for_core_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    interpolate = core_sampling._interpolate
 
     def heavier(at: Any, values: Any, s: Any) -> Any:
         return interpolate(at, values, s) * (1.01 if (values[:, 0, 0] == values[:, 1, 1]).all() else 1.0)
 
-    monkeypatch.setattr(core_blade, "_interpolate", heavier)
+    monkeypatch.setattr(core_sampling, "_interpolate", heavier)
     monkeypatch.setattr(tasks, "fingerprints", in_this_process)
     found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
-    assert (
-        evidence.verdict(found) == "No: the model of core, scikit-fem-reissner differs from the stations of the blade."
-    )
+    assert evidence.verdict(found) == "No: the model of core differs from the stations of the blade."
     first = properties.lines(found)[0]
     assert first.startswith(
         "Model of core: mass: 1212 kg in the code's model, 1200 kg by quadrature of the stations: +1 %"

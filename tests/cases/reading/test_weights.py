@@ -1,4 +1,4 @@
-"""Every code's own model weighs what its stations weigh; an error of 1 % in the sampling is found in all, by name."""
+"""Every code's own model weighs what its stations weigh; an error of 1 % in a sampling is found by name, where it is."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -8,8 +8,10 @@ import numpy as np
 import pytest
 
 from southwell.cases.reading import weights as wt
-from southwell.core import blade as core_blade
+from southwell.core import sampling as core_sampling
+from southwell.core import solve
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
+from southwell.references import sampling
 from southwell.references.protocol import registry, worker
 from southwell.references.protocol.fingerprint import Fingerprint
 from southwell.references.protocol.interface import BladeAdapter
@@ -137,12 +139,36 @@ def heavier(old: Callable[..., Any]) -> Callable[..., Any]:
     return interpolate
 
 
-@pytest.mark.parametrize("name", ["exudyn-tree", "scikit-fem-reissner", "scikit-fem", "pinocchio"])
-def test_one_per_cent_of_mass_in_the_shared_sampling_is_found_by_name(
-    monkeypatch: pytest.MonkeyPatch, name: str
+SAMPLING = ((core_sampling, "_interpolate"), (sampling, "_table"))
+"""Where core, and the adapters, interpolate between stations."""
+
+SAMPLE_THEMSELVES = ("exudyn-tree", "exudyn-beam", "scikit-fem-reissner", "scikit-fem", "pybmodes", "exact-beam")
+
+
+@pytest.mark.parametrize("name", ["core", "pinocchio", *SAMPLE_THEMSELVES])
+@pytest.mark.parametrize(("module", "function"), SAMPLING, ids=["core", "references"])
+def test_an_error_of_one_sampling_is_not_in_the_models_of_the_other(
+    monkeypatch: pytest.MonkeyPatch, module: Any, function: str, name: str
+) -> None:
+    blade = tapered(pitch=0.0, twist=np.zeros(4))
+    monkeypatch.setattr(module, function, heavier(getattr(module, function)))
+    adapter = None if name == "core" else code(name)
+    assembled = [wt.of_core(blade)] if adapter is None else models(adapter, blade)
+    rotary = adapter is None or adapter.effects.rotary_inertia
+    found = wt.weights(blade, wt.stations_of(blade), assembled, rotary)
+    own = (module is sampling) == (name in SAMPLE_THEMSELVES)
+    assert found[0].difference == pytest.approx(0.01 if own else 0.0, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("name", "module", "function"),
+    [("exudyn-tree", *SAMPLING[1]), ("scikit-fem-reissner", *SAMPLING[1]), ("pinocchio", *SAMPLING[0])],
+)
+def test_one_per_cent_of_mass_is_found_by_name(
+    monkeypatch: pytest.MonkeyPatch, name: str, module: Any, function: str
 ) -> None:
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
-    monkeypatch.setattr(core_blade, "_interpolate", heavier(core_blade._interpolate))
+    monkeypatch.setattr(module, function, heavier(getattr(module, function)))
     found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade))
     wrong = {w.name: w.difference for w in found if w.verdict == "fail"}
     assert set(wrong) == {"mass", "first moment of mass along x", "inertia about the rotor's axis"}
@@ -150,8 +176,17 @@ def test_one_per_cent_of_mass_in_the_shared_sampling_is_found_by_name(
     line = next(w.line for w in found if w.name == "mass")
     assert line.startswith("mass: ")
     assert line.endswith(" kg by quadrature of the stations: +1 %")
-    core = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
-    assert core[0].verdict == "fail"
+
+
+@pytest.mark.parametrize("name", SAMPLE_THEMSELVES)
+def test_one_per_cent_of_mass_in_core_is_seen_in_the_frequencies(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+    blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
+    given = adapter.modes(blade, 0.0, adapter.levels[1], 2).frequencies
+    agreed = solve.modes(blade, 0.0, 32, 2).frequencies
+    monkeypatch.setattr(core_sampling, "_interpolate", heavier(core_sampling._interpolate))
+    wrong = solve.modes(blade, 0.0, 32, 2).frequencies
+    assert (np.abs(given / agreed - 1.0) < 3e-3).all()
+    assert given / wrong == pytest.approx(given / agreed * 1.01**0.5, rel=1e-6)
 
 
 def softer(old: Callable[..., Any]) -> Callable[..., Any]:
@@ -166,12 +201,15 @@ def softer(old: Callable[..., Any]) -> Callable[..., Any]:
     return interpolate
 
 
-@pytest.mark.parametrize("name", ["core", "exudyn-tree", "scikit-fem-reissner"])
-def test_one_per_cent_of_stiffness_in_the_shared_sampling_is_found_by_name(
-    monkeypatch: pytest.MonkeyPatch, name: str
+@pytest.mark.parametrize(
+    ("name", "module", "function"),
+    [("core", *SAMPLING[0]), ("exudyn-tree", *SAMPLING[1]), ("scikit-fem-reissner", *SAMPLING[1])],
+)
+def test_one_per_cent_of_stiffness_is_found_by_name(
+    monkeypatch: pytest.MonkeyPatch, name: str, module: Any, function: str
 ) -> None:
     blade = tapered(pitch=0.0, twist=np.zeros(4))
-    monkeypatch.setattr(core_blade, "_interpolate", softer(core_blade._interpolate))
+    monkeypatch.setattr(module, function, softer(getattr(module, function)))
     assembled = [wt.of_core(blade)] if name == "core" else models(code(name), blade)
     found = wt.weights(blade, wt.stations_of(blade), assembled)
     wrong = {w.name: w.difference for w in found if w.verdict == "fail"}
@@ -189,7 +227,7 @@ def test_a_code_without_rotary_inertia_is_compared_without_it() -> None:
 
 def test_one_per_cent_of_mass_in_one_adapter_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     def sampled(blade: Blade, s: Any) -> Any:
-        at = core_blade.sample(blade, s)
+        at = sampling.sample(blade, s)
         return replace(at, mass=1.01 * at.mass)
 
     monkeypatch.setattr(input_file, "sample", sampled)

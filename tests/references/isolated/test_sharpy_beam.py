@@ -12,7 +12,8 @@ from scipy.spatial.transform import Rotation
 
 from southwell.cases.conformance.blades import PROPERTIES
 from southwell.core import solve
-from southwell.core.blade import Blade, mass_at, stiffness_at, uniform_blade, without_rotary_inertia
+from southwell.core.blade import Blade, uniform_blade, without_rotary_inertia
+from southwell.core.sampling import mass_at, stiffness_at
 from southwell.references.isolated.sharpy import CODE, _shapes, _unpacked, request
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin

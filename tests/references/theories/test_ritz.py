@@ -6,9 +6,10 @@ import numpy as np
 import pytest
 from scipy.integrate import newton_cotes, quad
 
-from southwell.core.blade import Blade, mass_at, section_stiffness
+from southwell.core.blade import Blade, section_stiffness
 from southwell.core.mechanism.description import inertia as body
 from southwell.core.modes import STATIONS
+from southwell.core.sampling import mass_at
 from southwell.references.protocol.interface import CodeError
 from southwell.references.theories import (
     assumed_modes,

@@ -11,7 +11,8 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.openfast import elastodyn
 from southwell.cases.writers import elastodyn as elastodyn_write
-from southwell.core.blade import mass_at, uniform_blade
+from southwell.core.blade import uniform_blade
+from southwell.core.sampling import mass_at
 from southwell.tests.support.blade_files import assert_same, real
 
 DATA = Path(__file__).parents[4] / "data" / "blades"
