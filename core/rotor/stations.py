@@ -8,9 +8,10 @@ depend on the frame in which the machine was linearised, so that codes with othe
 import numpy as np
 from numpy.typing import NDArray
 
-from ..blade import Blade, mass_at
+from ..blade import Blade
 from ..element.mesh import Mesh
 from ..modes import STATIONS
+from ..sampling import mass_at
 from ..space import spatial as sp
 from ..tree.links import Links, twists
 from ..tree.mode_shapes import mode_shapes

@@ -17,8 +17,8 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import eigh
 
-from southwell.core.blade import mass_at, stiffness_at, twist_at
 from southwell.core.rotor.turbine import Turbine
+from southwell.core.sampling import mass_at, stiffness_at, twist_at
 from southwell.core.space import spatial as sp
 
 Array = NDArray[np.float64]
