@@ -22,6 +22,11 @@ PLANES = ("EdgEAOf", "FlpEAOf", "EdgcgOf", "FlpcgOf", "PreswpRef", "PrecrvRef")
 """FAST 7's offsets: of the elastic axis and the mass centre from the reference axis, and of that from the pitch axis."""
 
 
+DESCRIPTION = 1
+"""Index of the line that describes a file in words, which weio 2.0.0 takes for the head of BeamDyn's table if it contains
+"distributed properties"."""
+
+
 def parsed(path: Path) -> tuple[Any, str]:
     """A file read by weio, and the name and version of weio."""
 
@@ -31,7 +36,7 @@ def parsed(path: Path) -> tuple[Any, str]:
         return FASTInputFile
 
     reader, name = parser("weio", imported)
-    return reader(str(path)), name
+    return reader(str(path), IComment=[DESCRIPTION]), name
 
 
 def first_of(file: Any, *labels: str) -> Any:
