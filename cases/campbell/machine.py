@@ -2,7 +2,7 @@
 
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -46,6 +46,7 @@ class Line:
         names: (k,) its name at each speed.
         confidence: (k,) part of the elastic energy in the motion that names it.
         uncertainty: relative numerical uncertainty.
+        places: (k,) index of the mode among those solved at each speed.
     """
 
     name: str
@@ -53,6 +54,7 @@ class Line:
     names: tuple[str, ...]
     confidence: Array
     uncertainty: float
+    places: tuple[int, ...]
 
 
 @dataclass(frozen=True)
@@ -85,7 +87,7 @@ class Nearest:
 
 @dataclass(frozen=True)
 class MachineDiagram:
-    """A turbine's diagram."""
+    """A turbine's diagram; ``solved`` are the modes at each speed."""
 
     turbine: Turbine
     request: MachineRequest
@@ -93,6 +95,7 @@ class MachineDiagram:
     lines: tuple[Line, ...]
     crossings: tuple[Crossing, ...]
     nearest: tuple[Nearest, ...]
+    solved: tuple[TurbineModes, ...]
 
     @property
     def kept(self) -> bool:
@@ -141,6 +144,7 @@ def machine_diagram(
         lines=lines,
         crossings=tuple(c for n, line in enumerate(lines) for c in _crossings(n, line, omega, request.per_rev)),
         nearest=_margins(lines, omega, request),
+        solved=tuple(solved),
     )
 
 
@@ -159,6 +163,7 @@ def _line(solved: Sequence[TurbineModes], places: Sequence[int], doubt: Array) -
         names=names,
         confidence=np.array([modes.confidence[k] for modes, k in zip(solved, places, strict=True)]),
         uncertainty=float(doubt[list(places)].max()),
+        places=tuple(places),
     )
 
 
@@ -169,7 +174,7 @@ def _numbered(lines: Sequence[Line]) -> tuple[Line, ...]:
     for line in lines:
         seen[line.name] += 1
         name = line.name if seen[line.name] == 1 else f"{line.name} ({seen[line.name]})"
-        out.append(Line(name, line.frequencies, line.names, line.confidence, line.uncertainty))
+        out.append(replace(line, name=name))
     return tuple(out)
 
 

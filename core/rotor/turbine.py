@@ -113,6 +113,7 @@ class Assembled:
         blade: that of one blade.
         shaft: indices of the angles of hub and generator, if there are any.
         blades: (N, r) indices of the blades' coordinates, by multi-blade coordinate.
+        hub: (6, n) twist of the hub's non-rotating frame, in its axes.
         meshes, shapes: of tower and blade, in the steady state.
         tower_links, blade_links: their trees there.
     """
@@ -125,6 +126,7 @@ class Assembled:
     blade: Component
     shaft: tuple[int, ...]
     blades: NDArray[np.intp]
+    hub: Array
     meshes: tuple[Mesh, Mesh]
     shapes: tuple[Shape, Shape]
     tower_links: Links
@@ -238,6 +240,7 @@ def assemble(made: Machine, omega: float) -> Assembled:
         blade=blade,
         shaft=tuple(range(t, t + angles)),
         blades=blades,
+        hub=hub_twist,
         meshes=(made.tower_mesh, made.blade_mesh),
         shapes=(made.tower_state.shape, state.shape),
         tower_links=made.tower_state.pencil.links,

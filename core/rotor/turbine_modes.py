@@ -19,6 +19,7 @@ from ..spectrum import eigen
 from ..threads import one_thread
 from ..tree.links import twists
 from . import multiblade, stations
+from .motion import Motion, displacements, flattened
 from .turbine import Assembled, Machine, assemble
 from .whirl import whirl
 
@@ -53,6 +54,7 @@ class TurbineModes:
         energies: (m, g) parts of the groups ``groups``; each row adds up to 1.
         groups: (g,) names of the motions.
         shapes: (m, k) displacements of tower, shaft and blades by multi-blade coordinate, for tracking; the largest is 1.
+        parts: positions and displacements of tower, hub and blades, by multi-blade coordinate.
         directions: (m,) whirl of the blades' motion, from −1, backward, to 1, forward.
         motions: (m, 21 (1 + N), 4) motion of the stations of tower and blades, see ``stations``.
     """
@@ -65,6 +67,7 @@ class TurbineModes:
     energies: Array
     groups: tuple[str, ...]
     shapes: Complex
+    parts: Motion
     directions: Array
     motions: Complex
 
@@ -97,6 +100,7 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         if len(motions):
             label, directions[k] = _turned(a, label, x, motions)
         names.append(label)
+    motion = _motion(made, a, vectors)
     return TurbineModes(
         omega=omega,
         frequencies=np.abs(values),
@@ -105,7 +109,8 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         confidence=energies.max(1),
         energies=energies,
         groups=labels,
-        shapes=_shapes(a, vectors),
+        shapes=flattened(motion, vectors[list(a.shaft)].T, a.meshes[1].scale),
+        parts=motion,
         directions=directions,
         motions=stations.motions(made.turbine, a, vectors),
     )
@@ -182,17 +187,18 @@ def _weight(index: int, blades: int) -> float:
     return float((multiblade.transformation(0.0, blades)[:, index] ** 2).sum())
 
 
-def _shapes(a: Assembled, vectors: Complex) -> Complex:
-    """(m, k) displacements at the nodes, by which modes are compared from speed to speed."""
-    t = a.tower.size
-    tower = twists(a.tower_links, a.tower.vectors)[..., :3].reshape(t, -1)
-    blade = twists(a.blade_links, a.blade.vectors)[..., :3].reshape(a.blade.size, -1)
-    parts: list[Complex] = [vectors[:t].T @ tower]
-    length = a.meshes[1].scale
-    parts += [length * vectors[[k]].T for k in a.shaft]
-    parts += [vectors[row].T @ blade for row in a.blades]
-    out: Complex = np.concatenate(parts, axis=1)
-    return out / np.abs(out).max(axis=1, keepdims=True)
+def _motion(made: Machine, a: Assembled, vectors: Complex) -> Motion:
+    """The motion of tower, hub and blades in modes (n, m)."""
+    tower = displacements(a.shapes[0], a.tower_links, a.tower.vectors)
+    blade = displacements(a.shapes[1], a.blade_links, a.blade.vectors)
+    return Motion(
+        tower=a.shapes[0].nodes[:, :3, 3],
+        shaft=a.shapes[0].nodes[-1] @ made.turbine.shaft,
+        blade=a.shapes[1].nodes[:, :3, 3],
+        tower_motion=np.einsum("rm,rpi->mpi", vectors[: a.tower.size], tower),
+        hub=vectors.T @ a.hub.T,
+        blades=np.einsum("nrm,rqi->mnqi", vectors[a.blades], blade),
+    )
 
 
 def tracked(at: Sequence[TurbineModes]) -> list[NDArray[np.intp]]:

@@ -12,8 +12,8 @@ from ....cases.input.errors import CaseError
 from ....cases.input.readers.openfast import turbine as reader
 from ....cases.input.readers.source import Mount
 from ....cases.input.writing import writable
+from ...campbell import interactive, moving_machine, tables
 from ...campbell import machine as pages
-from ...campbell import tables
 from ...campbell.cover import Origin
 from ...documents import html as as_html
 from ...shared import not_used
@@ -50,7 +50,7 @@ def run(
         request: the settings; its speeds are ignored.
         mount: overrides of the blade's mounting.
         out: output folder.
-        html: also write campbell.html.
+        html: also write campbell.html, and the interactive page if Plotly is installed.
 
     Raises:
         CaseError: the deck cannot be read, or a speed has no steady state.
@@ -87,5 +87,7 @@ def run(
         written = pages.write(diagram, out, units, command, origin, about[:1])
         if html:
             written = (*written, as_html.write(written[0]))
+            if interactive.installed():
+                written = (*written, moving_machine.write(diagram, out, units))
     console.print(f"{out}: {', '.join(p.name for p in written)}", markup=False, soft_wrap=True)
     return diagram.kept
