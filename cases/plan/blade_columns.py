@@ -15,7 +15,7 @@ from ..judge.cells import Head
 from ..solve.published_tables import about, rows
 from ..solve.reference import felt
 from ..solve.refinement import Refining
-from ..solve.works import ELEMENTS, as_in_source, papers_equations, refined_code, same_code
+from ..solve.works import as_in_source, papers_equations, refined_code, same_code
 from .column import Column, absent_work, failing_work, not_installed
 
 SAME = 1e-8
@@ -41,7 +41,7 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
             )
         )
     head = Head(variant.name, PAPER, version("southwell"), "same discretisation", SAME, "everything")
-    work = partial(papers_equations, head, blade, source.elements if source else ELEMENTS)
+    work = partial(papers_equations, head, blade)
     out.append(Column(PAPER, ALL_EFFECTS, head, work, due="highest speed"))
     for table in about(blade, case.text.compare.tables):
         head = Head(variant.name, table.name, "", "table", target, "nothing")

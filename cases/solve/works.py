@@ -22,7 +22,7 @@ from .copies import copied
 from .refinement import Refining, solve
 
 ELEMENTS = 20
-"""Number of elements of that column, as of the paper's blade, unless a case gives the number of its source. Codes with core's
+"""Number of elements of the paper's equations, as of its blade: their dense matrices take the cube of it. Codes with core's
 discretisation also have it if core is stable with it: refinement does not reduce rounding, which is compared."""
 
 References = Sequence[tuple[float, Reference]]
@@ -88,7 +88,7 @@ def same_code(
     return joined(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
 
 
-def papers_equations(head: Head, blade: Blade, elements: int, core: References) -> Rows:
+def papers_equations(head: Head, blade: Blade, core: References) -> Rows:
     """Rows of the paper's equations, at the highest speed only: a difference at lower speeds also appears there.
 
     Where core is not stable with the paper's elements, which have no geometric stiffness, there are half as many again;
@@ -98,9 +98,9 @@ def papers_equations(head: Head, blade: Blade, elements: int, core: References) 
         return [], []
     omega, reference = max(core, key=lambda pair: pair[0])
     meshes: list[tuple[int, Measure]] = [
-        (elements, "body_fixed"),
-        (3 * elements // 2, "body_fixed"),
-        (elements, "corotational"),
+        (ELEMENTS, "body_fixed"),
+        (3 * ELEMENTS // 2, "body_fixed"),
+        (ELEMENTS, "corotational"),
     ]
     for number, stiffness in meshes:
         run = (omega, number, reference.core.count)
