@@ -4,7 +4,8 @@ No code is imported here. A worker process does not load these modules again.
 """
 
 from ..core.blade import uniform_blade
-from .protocol import quadratic, worker  # noqa: F401
+from .matrices import quadratic  # noqa: F401
+from .protocol import worker  # noqa: F401
 from .theories import reference_line, spectral
 
 _BLADE = uniform_blade("", 1.0, 0.0, EA=1.0, GJ=1.0, EI_y=1.0, EI_z=1.0, mass=1.0)

@@ -17,7 +17,6 @@ from .. import participation
 from ..modes import Modes
 from ..spectrum import eigen
 from ..threads import one_thread
-from ..tree.links import twists
 from . import multiblade, stations
 from .motion import Motion, displacements, flattened
 from .turbine import Assembled, Machine, assemble

@@ -22,9 +22,9 @@ from scipy.interpolate import CubicHermiteSpline
 from ...core.blade import BEND_Y, BEND_Z, Blade, uniform
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import BladeAdapter, Independence, Motion
-from ..protocol.quadratic import gyroscopic_modes
 from ..sampling import sample
 from . import system as ex
 

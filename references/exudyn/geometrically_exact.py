@@ -27,9 +27,9 @@ from scipy.spatial.transform import Rotation
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, COUPLING_ROUNDING, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
-from ..protocol.quadratic import gyroscopic_modes
 from ..sampling import mass_at, points, stiffness_at
 from ..theories.reference_line import JUMP, element_ends, line, moments
 from . import system as ex

@@ -20,10 +20,10 @@ from ...core.mechanism.description import Mechanism
 from ...core.rank import ranked
 from ...core.tree.spanning import compile_tree
 from ...core.tree.topology import Tree
-from ..protocol import rotating
+from ..matrices import rotating
+from ..matrices.quadratic import damped_modes
+from ..matrices.rescaling import in_own_length
 from ..protocol.interface import CORE, CodeError, Independence, MechanismAdapter, MechanismModes
-from ..protocol.quadratic import damped_modes
-from ..protocol.rescaling import in_own_length
 from . import system as ex
 from .closure import System, own_coordinates, system, velocity
 

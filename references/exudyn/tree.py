@@ -19,9 +19,9 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import rotation
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
-from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import steps
 from . import system as ex
 from .hinged_segments import SLIDE, TURN, HingedSegments, hinge_segments

@@ -2,7 +2,7 @@
 
 The segments are those of ``hinged_segments``: the data of the deck, divided here, without core's elements, frames or reduction
 to few motions. Exudyn computes kinematics and inertia forces and linearises the whole machine at three azimuths; Fourier
-coordinates of the blades remove the azimuth (``protocol.rotating``). The blades are in balance at the rotor speed, and the
+coordinates of the blades remove the azimuth (``matrices.rotating``). The blades are in balance at the rotor speed, and the
 tower under the weight of all that it carries, as if the rotor were rigid: gravity does not act on the blades' own motions,
 which it would make periodic.
 """
@@ -13,9 +13,9 @@ from numpy.typing import NDArray
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, straight
 from ...core.effects import ALL_EFFECTS
 from ...core.rotor.turbine import Turbine
-from ..protocol import rotating
+from ..matrices import rotating
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.interface import REFERENCE_LINE, Independence
-from ..protocol.quadratic import gyroscopic_modes
 from ..protocol.turbines import TurbineAdapter, TurbineModes
 from ..theories import turbine_tree
 from ..theories.reference_line import line

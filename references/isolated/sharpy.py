@@ -24,8 +24,8 @@ from ...core.blade import BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence
-from ..protocol.quadratic import gyroscopic_modes
 from ..sampling import mass_at, stiffness_at
 from ..theories.reference_line import line
 from ..theories.spectral import gauss, intervals

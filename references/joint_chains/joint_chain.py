@@ -23,9 +23,9 @@ from ...core.modes import STATIONS, Modes
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
 from ...core.space.spatial import skew
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.fingerprint import Fingerprint, of_matrix
 from ..protocol.interface import CORE, BladeAdapter, CodeError, Independence
-from ..protocol.quadratic import gyroscopic_modes
 
 Array = NDArray[np.float64]
 

@@ -5,7 +5,7 @@ built here (``spanning``) and may cut other joints. Pinocchio computes inertia f
 closed by Haug's products of directions (``closure``), not by core's weld beyond a copy of the body. The equations of
 motion are reduced by an orthonormal basis of the null space of the constraint Jacobian (E. J. Haug 1989, ch. 11), not
 by core's partition into independent and dependent coordinates. The curvature of the constraints under their reactions
-is analytical. The eigensolver is ``protocol.quadratic``, as for ``exudyn-loops``.
+is analytical. The eigensolver is ``matrices.quadratic``, as for ``exudyn-loops``.
 """
 
 from collections.abc import Mapping
@@ -17,10 +17,10 @@ from numpy.typing import NDArray
 
 from ...core.effects import ALL_EFFECTS
 from ...core.mechanism.description import Mechanism
-from ..protocol import rotating
+from ..matrices import rotating
+from ..matrices.quadratic import damped_modes
+from ..matrices.rescaling import in_own_length
 from ..protocol.interface import CodeError, Independence, MechanismAdapter, MechanismModes, extra
-from ..protocol.quadratic import damped_modes
-from ..protocol.rescaling import in_own_length
 from .plant import Plant, Tangent
 from .spanning import spanning
 

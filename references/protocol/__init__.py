@@ -1,5 +1,5 @@
 """The interface of foreign codes, and how they are run.
 
 ``interface`` defines a code and ``registry`` finds one by name. ``worker`` runs it in a separate process and exchanges
-the blade and the modes as JSON (``wire``). ``quadratic`` and ``damped`` solve the eigenproblem for codes that return matrices.
+the blade and the modes as JSON (``wire``).
 """

@@ -52,7 +52,7 @@ class Independence:
     Two codes with the same ``engine``, ``theory`` or ``rotation`` count as one confirmation. A code with ``CORE``
     anywhere is not independent: it confirms only that core solves its model correctly. The same ``sections`` or
     ``eigensolver`` are shown but do not count: all codes read the same blade, and the adapters' eigensolver,
-    ``references.protocol.quadratic``, is verified separately, against SciPy's dense eigenvalues of the state-space
+    ``references.matrices.quadratic``, is verified separately, against SciPy's dense eigenvalues of the state-space
     matrix in ``tests/cases/judge/test_groups.py``.
 
     Attributes:

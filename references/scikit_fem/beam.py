@@ -15,10 +15,10 @@ from scipy.sparse import dia_array
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.cache_last import cache_last
 from ..protocol.fingerprint import Fingerprint, of_matrix
 from ..protocol.interface import BladeAdapter, CodeError, Independence, extra
-from ..protocol.quadratic import gyroscopic_modes
 from ..sampling import Sections, sample
 from ..theories.grading import element_ends
 from . import forms as forms

@@ -20,10 +20,10 @@ from scipy.sparse import linalg as spla
 from ...core.blade import Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.cache_last import cache_last
 from ..protocol.fingerprint import Fingerprint, of_matrix, rigid_motions, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence, extra
-from ..protocol.quadratic import gyroscopic_modes
 from ..theories.reference_line import element_ends, line, moments, steps
 from . import reissner_forms as forms
 from .assembly import bilinear, skfem

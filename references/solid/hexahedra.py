@@ -21,9 +21,9 @@ from scipy.sparse.linalg import splu
 
 from ...core.condense.ties import FiniteElements
 from ...core.modes import Modes
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.cache_last import cache_last
 from ..protocol.interface import CodeError, extra
-from ..protocol.quadratic import gyroscopic_modes
 from .materials import Material, Orthotropic, rotated
 from .mesh import Bricks, Clamp, fixed_by, mean_motions, means, workless
 

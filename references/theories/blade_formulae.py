@@ -9,8 +9,8 @@ from collections.abc import Callable, Mapping
 import numpy as np
 from numpy.typing import NDArray
 
+from ..matrices.quadratic import damped_modes
 from ..protocol.interface import MechanismModes
-from ..protocol.quadratic import damped_modes
 
 Array = NDArray[np.float64]
 Matrices = tuple[tuple[str, ...], Array, Array, Array]

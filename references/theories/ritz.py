@@ -13,8 +13,8 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 
 from ...core.modes import STATIONS, Modes
+from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.interface import CodeError
-from ..protocol.quadratic import gyroscopic_modes
 
 Array = NDArray[np.float64]
 

@@ -67,7 +67,7 @@ def test_the_reference_line_is_declared_by_the_codes_that_use_it(name: str) -> N
 @pytest.mark.parametrize("name", BLADE_CODES)
 def test_the_adapters_eigensolver_is_declared_by_the_codes_that_use_it(name: str) -> None:
     imported = {other for module in modules(name) for other in imports(module)}
-    own = "southwell.references.protocol.quadratic" in imported
+    own = "southwell.references.matrices.quadratic" in imported
     engine = registry.code(name).independence
     assert (engine.eigensolver == "the adapters' own") == own or engine.eigensolver == engine.engine
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 from southwell import multibody as mb
 from southwell.references.exudyn import mechanism as exudyn
 from southwell.references.linkages import mechanism as pinocchio
-from southwell.references.protocol.rescaling import Units
+from southwell.references.matrices.rescaling import Units
 from southwell.tests.core.mechanism.test_units import in_other_units
 from southwell.tests.support import mechanisms
 

@@ -11,9 +11,9 @@ from southwell.cases.input.schema import decode
 from southwell.cases.input.toml import document
 from southwell.cases.judge.results import Origin, Run, Setting
 from southwell.cases.judge.witnesses import groups, short, witnesses
+from southwell.references.matrices.quadratic import gyroscopic_modes
 from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, Independence, shares
-from southwell.references.protocol.quadratic import gyroscopic_modes
 from southwell.reports.shared import summary
 from southwell.reports.verification import witnesses as reported
 from southwell.tests.support.codes import BLADE_CODES

@@ -14,7 +14,7 @@ from hypothesis import strategies as st
 
 from southwell import multibody as mb
 from southwell.core.mechanism.length import coordinate_units
-from southwell.references.protocol.rescaling import Units, in_units
+from southwell.references.matrices.rescaling import Units, in_units
 from southwell.tests.core.steady.test_periodic import REFUSED
 from southwell.tests.support import linkages, mechanisms
 

@@ -15,7 +15,7 @@ from southwell.core.spectrum import modal
 from southwell.references.exudyn import system as ex
 from southwell.references.exudyn.closure import System
 from southwell.references.exudyn.mechanism import CODE
-from southwell.references.protocol.quadratic import damped_modes
+from southwell.references.matrices.quadratic import damped_modes
 
 pytestmark = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
 

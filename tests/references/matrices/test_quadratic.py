@@ -5,8 +5,8 @@ import pytest
 from scipy import sparse
 from scipy.sparse.linalg import aslinearoperator
 
+from southwell.references.matrices.quadratic import DENSE, gyroscopic_modes
 from southwell.references.protocol.interface import CodeError
-from southwell.references.protocol.quadratic import DENSE, gyroscopic_modes
 
 
 @pytest.fixture(params=["direct", "full, iterated", "sparse"])

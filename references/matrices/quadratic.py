@@ -18,7 +18,7 @@ import scipy.sparse as sp
 from numpy.typing import NDArray
 from scipy.sparse import linalg as spla
 
-from .interface import CodeError
+from ..protocol.interface import CodeError
 
 Array = NDArray[np.float64]
 Matrix = Array | sp.spmatrix | sp.sparray | spla.LinearOperator

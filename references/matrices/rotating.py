@@ -12,7 +12,7 @@ import scipy.linalg
 from numpy.typing import NDArray
 from scipy.sparse import linalg as spla
 
-from .interface import CodeError
+from ..protocol.interface import CodeError
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -17,7 +17,7 @@ from ...core.mechanism.description import Beam, Body, CoordinateSpring, Load, Me
 from ...core.mechanism.joints import Joint
 from ...core.mechanism.length import coordinate_units, length_of
 from ...core.mechanism.motion import Motion, MotionLaw
-from .interface import MechanismModes
+from ..protocol.interface import MechanismModes
 
 Array = NDArray[np.float64]
 
