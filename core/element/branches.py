@@ -37,7 +37,7 @@ def attached(
         at_b: (4, 4) the same in the branch's node 0; the identity by default.
         stiffness: (6,) of the joint's coordinates, displacements along x, y, z of its frame, then rotations about x, y, z in
             sequence, N/m and N m/rad: ``inf`` clamps one, 0 leaves it free; clamped by default. Every coordinate that is not
-            clamped is a link.
+            clamped is a link. Or (6, 6), symmetric and positive definite apart from ``inf`` on the diagonal: see ``springs``.
 
     Raises:
         ValueError: elements of different strain measures, or with mass in one part and lumped in the other.
@@ -45,11 +45,10 @@ def attached(
     a, b = tree.beams, branch.beams
     if tree.elements and branch.elements and (a.law.measure, a.inner) != (b.law.measure, b.inner):
         raise ValueError("branch: its elements have another strain measure or mass than the tree's")
-    screws = np.eye(6)[np.isfinite(stiffness)]
-    springs = stiffness[np.isfinite(stiffness)]
-    if not len(springs):
-        screws, springs = np.zeros((1, 6)), np.zeros(1)
-    links, nodes, count = len(tree.parent), len(tree.nodes), len(springs)
+    screws, constants = springs(stiffness)
+    if not len(constants):
+        screws, constants = np.zeros((1, 6)), np.zeros(1)
+    links, nodes, count = len(tree.parent), len(tree.nodes), len(constants)
     to_branch = np.eye(4) if at_b is None else sp.inverse(at_b)
     between = np.tile(np.eye(4), (count, 1, 1))  # of the joint's links
     between[0] = at_a
@@ -76,10 +75,29 @@ def attached(
         parent=np.concatenate([tree.parent, [node], nodes + np.arange(inside), branch.parent + nodes + inside]),
         joints=(
             *tree.joints,
-            *(JointLink(links + k, screws[k], float(springs[k])) for k in range(count)),
+            *(JointLink(links + k, screws[k], float(constants[k])) for k in range(count)),
             *(replace(j, link=j.link + links + count) for j in branch.joints),
         ),
     )
+
+
+def springs(stiffness: Array) -> tuple[Array, Array]:
+    """Screws (j, 6) and spring constants (j,) of joints in series that together have this stiffness.
+
+    The compliances of joints in series add up: K⁻¹ = Σ s sᵀ/k. With K⁻¹ = L D Lᵀ, L lower triangular with ones on the
+    diagonal, the screws are the columns of L and the constants 1/D.
+
+    Args:
+        stiffness: (6,) of single coordinates, or (6, 6).
+    """
+    diagonal = stiffness if stiffness.ndim == 1 else np.diagonal(stiffness)
+    finite = np.flatnonzero(np.isfinite(diagonal))
+    if stiffness.ndim == 1 or not len(finite):
+        return np.eye(6)[finite], diagonal[finite]
+    root = np.linalg.cholesky(np.linalg.inv(stiffness[np.ix_(finite, finite)]))
+    screws = np.zeros((len(finite), 6))
+    screws[:, finite] = (root / np.diagonal(root)).T
+    return screws, np.diagonal(root) ** -2
 
 
 def around_hub(blade: Mesh, count: int) -> Mesh:

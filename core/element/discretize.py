@@ -30,6 +30,7 @@ def discretize(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
     load: Array | None = None,
+    at: Array | None = None,
 ) -> Mesh:
     """Divide a blade into elements.
 
@@ -42,6 +43,7 @@ def discretize(
         stiffness: strain measure, see ``measures``.
         load: (m, 3) steady force per length at the blade's stations, N/m, in the hub's axes, turning with them; linear between
             the stations.
+        at: arc lengths of the sample points, m; those of ``modes.STATIONS`` by default.
 
     Raises:
         ValueError: fewer than one element, or a load that is not one row of three per station.
@@ -58,7 +60,8 @@ def discretize(
         raise ValueError(
             f"load: shape {load.shape}: give three finite forces per length for each of {len(blade.stations)} stations"
         )
-    at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
+    if at is None:
+        at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
     seg = sections.integrate(blade, s, at)
     nodes, undeformed = seg.nodes, seg.undeformed
     corner = np.tile(np.eye(4), (elements, 1, 1))

@@ -30,6 +30,7 @@ from ..tree.pencil import Shape
 from . import component, multiblade
 from .component import Component
 from .periodic import CONSTANT, PeriodicError
+from .tower import Support, held, tower_mesh
 
 Array = NDArray[np.float64]
 
@@ -58,7 +59,7 @@ class Drivetrain:
 
 @dataclass(frozen=True)
 class Turbine:
-    """A turbine on rigid ground; SI units.
+    """A turbine; SI units.
 
     Attributes:
         name: for tables.
@@ -71,6 +72,7 @@ class Turbine:
         yaw: stiffness of the yaw bearing, N m/rad; ``inf`` is a locked one.
         drivetrain: the shaft and generator.
         gravity: m/s².
+        support: springs that hold the tower; rigid ground by default.
     """
 
     name: str
@@ -83,6 +85,7 @@ class Turbine:
     yaw: float = np.inf
     drivetrain: Drivetrain = field(default_factory=Drivetrain)
     gravity: float = G
+    support: Support = field(default_factory=Support)
 
 
 @dataclass(frozen=True)
@@ -185,6 +188,7 @@ def machine(turbine: Turbine, resolution: Resolution | None = None) -> Machine:
         rotor = np.ascontiguousarray(transformed(rigid_rotor(turbine, blade_mesh), turbine.shaft))
         mesh = _tower(turbine, how, turbine.nacelle + rotor)
         state = balance(mesh, 0.0, np.array([-turbine.gravity, 0.0, 0.0]), ALL_EFFECTS)
+        state = held(turbine.tower, turbine.support, how.tower_elements, state)
         tower = component.reduced(mesh, state, how.tower_modes, by_tip=True)
     r = tower.size
     M = tower.M[:r, :r] - tower.tip.T @ rotor @ tower.tip  # the rotor is added with its blades
@@ -261,7 +265,7 @@ def rigid_rotor(turbine: Turbine, mesh: Mesh) -> Array:
 
 def _tower(turbine: Turbine, how: Resolution, carried: Array) -> Mesh:
     """The tower with the yaw bearing and the inertia that it carries, at the last node."""
-    mesh = discretize(turbine.tower, how.tower_elements)
+    mesh = tower_mesh(turbine.tower, turbine.support, how.tower_elements)
     top = component.with_inertia(hub(mesh, np.eye(4)), 0, carried)
     stiffness = CLAMPED.copy()
     stiffness[3] = turbine.yaw

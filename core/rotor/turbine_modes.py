@@ -19,6 +19,7 @@ from ..spectrum import eigen
 from ..threads import one_thread
 from . import multiblade, stations
 from .motion import Motion, displacements, flattened
+from .tower import NAMES, ordinal
 from .turbine import Assembled, Machine, assemble
 from .whirl import whirl
 
@@ -30,9 +31,6 @@ CONFIDENT = 0.5
 
 RIGID = 1e-6
 """Frequency, relative to the lowest of the blade, below which a mode is the rotor that turns freely."""
-
-TOWER_NAMES = ("fore-aft", "side-side", "torsion", "axial")
-"""Names of the tower's motions in the order of ``participation.FAMILIES``."""
 
 BLADE_NAMES = ("flap", "edge", "torsion", "axial")
 
@@ -136,7 +134,7 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
     out: list[str] = ["yaw", SHAFT]
     numbers: dict[str, NDArray[np.intp]] = {}
     parts = (
-        ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], TOWER_NAMES),
+        ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], NAMES),
         ("blade", made.turbine.blade, a.blade, a.meshes[1], a.shapes[1], BLADE_NAMES),
     )
     for part, beam, reduced, mesh, shape, words in parts:
@@ -153,12 +151,6 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
             group.append(len(out) - 1)
         numbers[part] = np.array(group, dtype=np.intp)
     return tuple(out), numbers
-
-
-def ordinal(number: int) -> str:
-    """``1st``, ``2nd``, ``3rd``, ``4th`` …"""
-    suffix = "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
-    return f"{number}{suffix}"
 
 
 def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, NDArray[np.intp]], count: int) -> Array:

@@ -51,6 +51,8 @@ class ExudynTurbine(TurbineAdapter):
         tower, blade = turbine.tower, turbine.blade
         if not (straight(tower) and clamped(tower)) or tower.twist.any():
             return "the tower is not straight, without twist and clamped"
+        if not turbine.support.rigid:
+            return "the tower stands on springs"
         if not clamped(blade):
             return "the blades are not clamped to the hub"
         if blade.kinks:

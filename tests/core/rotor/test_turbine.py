@@ -12,8 +12,9 @@ from southwell.core.blade import uniform_blade
 from southwell.core.rotor import turbine as tb
 from southwell.core.rotor.multiblade import blades_of, second_order
 from southwell.core.rotor.orbit import orbit_of
+from southwell.core.rotor.tower import Support, Tower, ordinal, tower_modes
 from southwell.core.rotor.turbine import Drivetrain, Resolution, assemble, machine
-from southwell.core.rotor.turbine_modes import linked, ordinal, turbine_modes
+from southwell.core.rotor.turbine_modes import linked, turbine_modes
 from southwell.core.spectrum import eigen
 from southwell.tests.support.turbines import SMALL, as_mechanism, rigid_nacelle_and_rotor, small
 
@@ -107,6 +108,25 @@ def test_stiff_blades_leave_the_tower_with_a_rigid_rotor() -> None:
     tower = replace(turbine.tower, tip_mass=rigid_nacelle_and_rotor(stiff, rotor))
     exact = solve.modes(tower, 0.0, elements=6, count=4, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
     np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=3e-6)
+
+
+def test_a_turbine_on_springs_with_a_stiff_rotor_is_a_tower_on_springs() -> None:
+    turbine = replace(small(), gravity=9.81)
+    K = np.diag([1e8, 2e6, 3e6, 5e7, 8e7, 6e7])
+    K[1, 5] = K[5, 1] = -4e6
+    soil = np.array([[1.0, 3e4], [6.0, 1e4]])
+    wire = (12.0, np.diag([0.0, 5e4, 5e4, 0.0, 0.0, 0.0]))
+    stiff = replace(
+        turbine,
+        blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness),
+        support=Support(K, (wire,), soil),
+    )
+    made = machine(stiff, replace(SMALL, tower_elements=12))
+    tip = rigid_nacelle_and_rotor(stiff, tb.rigid_rotor(stiff, made.blade_mesh))
+    exact = tower_modes(Tower(replace(turbine.tower, tip_mass=tip), stiff.support, 9.81), 4).frequencies
+    np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=1e-4)
+    clamped = turbine_modes(machine(replace(stiff, support=Support()), SMALL), 0.0, 4).frequencies
+    assert np.abs(clamped / exact - 1.0).max() > 0.05
 
 
 def test_tower_with_a_tip_body() -> None:

@@ -1,0 +1,234 @@
+"""A tower on its foundation: a beam that stands, with a body at its top, springs at its base and along it, and its weight.
+
+Axes are the ground's: x up, z downwind, y = z × x. The base's stiffness becomes joints in series (``branches.springs``). Other
+springs add to the stiffness of the element at which they act; they are unloaded in the balance under weight.
+"""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from .. import participation
+from ..blade import Blade
+from ..effects import ALL_EFFECTS
+from ..element.branches import attached, hub, springs
+from ..element.discretize import discretize, divide
+from ..element.mesh import Mesh
+from ..modes import Modes
+from ..spectrum.lanczos import lanczos
+from ..spectrum.mesh_solver import balance
+from ..steady.blade_state import Steady
+from ..threads import one_thread
+from ..tree.mode_shapes import mode_shapes, sampling_matrix
+from ..tree.pencil import TreePencil, on_nodes
+
+Array = NDArray[np.float64]
+
+ELEMENTS = 48
+"""Elements of a tower; half of them, too, for the uncertainty."""
+
+SAFETY = 3.0
+"""Factor from a change under refinement to the uncertainty of a frequency."""
+
+POINTS = 4
+"""Gauss points of the soil's stiffness in each part of an element."""
+
+SAME = 1e-9
+"""Heights closer than this fraction of the length coincide."""
+
+NAMES = ("fore-aft", "side-side", "torsion", "axial")
+"""Names of a tower's motions in the order of ``participation.FAMILIES``."""
+
+
+@dataclass(frozen=True)
+class Support:
+    """Springs that hold a tower; the default is rigid ground at its base.
+
+    Attributes:
+        base: (6, 6) symmetric stiffness at the base over displacements along x, y, z and rotations about them, N/m, N, N m;
+            positive definite apart from directions with ``inf`` on the diagonal, which are clamped. None clamps all.
+        springs: heights above the base, m, and the (6, 6) stiffness that acts there, such as that of guy wires.
+        soil: (n, 2) heights, m, ascending, and the stiffness against lateral motion per length, N/m²; linear in between.
+    """
+
+    base: Array | None = None
+    springs: tuple[tuple[float, Array], ...] = ()
+    soil: Array | None = None
+
+    @property
+    def rigid(self) -> bool:
+        """Whether there is only rigid ground at the base."""
+        return self.base is None and not self.springs and self.soil is None
+
+
+@dataclass(frozen=True)
+class Tower:
+    """A tower.
+
+    Attributes:
+        beam: from the base along x, upwards; its ``tip_mass`` is the body at the top.
+        support: what holds it.
+        gravity: m/s²; the weight compresses the tower and tips over what is above.
+    """
+
+    beam: Blade
+    support: Support = Support()
+    gravity: float = 0.0
+
+
+@dataclass(frozen=True)
+class TowerModes:
+    """The lowest modes of a tower.
+
+    Attributes:
+        frequencies: (m,) rad/s, ascending.
+        names: (m,) as ``1st fore-aft``.
+        confidence: (m,) part of the kinetic energy in the motion that names each mode.
+        uncertainty: (m,) relative numerical uncertainty.
+    """
+
+    frequencies: Array
+    names: tuple[str, ...]
+    confidence: Array
+    uncertainty: Array
+
+
+def tower_modes(tower: Tower, count: int = 6) -> TowerModes:
+    """The ``count`` lowest modes.
+
+    Raises:
+        ValueError: a stiffness is not symmetric or not positive, or a spring is not on the tower.
+        SteadyStateError, UnstableError: the tower does not carry the weight.
+    """
+    with one_thread():
+        coarse, fine = (_solved(tower, elements, count) for elements in (ELEMENTS // 2, ELEMENTS))
+    fractions = participation.participation(fine, tower.beam)
+    families = fractions.argmax(1)
+    seen = [0] * len(NAMES)
+    names = []
+    for family in families.tolist():
+        seen[family] += 1
+        names.append(f"{ordinal(seen[family])} {NAMES[family]}")
+    change = SAFETY * np.abs(coarse.frequencies / fine.frequencies - 1.0)
+    return TowerModes(fine.frequencies, tuple(names), fractions.max(1), change)
+
+
+def _solved(tower: Tower, elements: int, count: int) -> Modes:
+    mesh = tower_mesh(tower.beam, tower.support, elements)
+    state = balance(mesh, 0.0, np.array([-tower.gravity, 0.0, 0.0]), ALL_EFFECTS)
+    pencil = held(tower.beam, tower.support, elements, state).pencil
+    lowest = lanczos(pencil, count)
+    shapes = mode_shapes(mesh, state.shape, on_nodes(pencil, lowest.vectors))
+    return Modes(0.0, lowest.frequencies, shapes, mesh.elements)
+
+
+def ordinal(number: int) -> str:
+    """``1st``, ``2nd``, ``3rd``, ``4th`` …"""
+    suffix = "th" if 10 <= number % 100 <= 20 else {1: "st", 2: "nd", 3: "rd"}.get(number % 10, "th")
+    return f"{number}{suffix}"
+
+
+def tower_mesh(beam: Blade, support: Support, elements: int, at: Array | None = None) -> Mesh:
+    """The tower's elements on the joints of its base; ``at`` are the heights of its sample points, see ``discretize``.
+
+    Raises:
+        ValueError: a stiffness is not symmetric or not positive, or a spring is not on the tower.
+    """
+    mesh = discretize(beam, _ends(beam, support, elements), at=at)
+    if support.base is None:
+        return mesh
+    return attached(hub(mesh, np.eye(4)), 0, mesh, np.eye(4), stiffness=checked("base", support.base, True))
+
+
+def held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady:
+    """The steady state of a tower with the springs along it in its stiffness, see ``links``."""
+    if support.soil is None and not support.springs:
+        return state
+    p = state.pencil
+    K = p.K.copy()
+    if support.soil is not None:
+        heights, weights = _gauss(_ends(beam, support, elements), support.soil)
+        mesh = tower_mesh(beam, support, elements, heights)
+        sampled = sampling_matrix(mesh, state.shape)[:, 1:3]
+        for link, k, moved in zip(mesh.samples.element.tolist(), weights.tolist(), sampled, strict=True):
+            J = _of_link(p, link, moved)
+            K[link] += k * J.T @ J
+    offset = 0 if support.base is None else len(springs(support.base)[1]) or 1
+    ends = _ends(beam, support, elements)
+    for height, stiffness in support.springs:
+        link = int(np.abs(ends - height).argmin()) + offset - 1
+        if link < 0:
+            continue  # at a clamped base
+        axes = np.kron(np.eye(2), state.shape.nodes[link + 1, :3, :3])
+        J = _of_link(p, link, np.concatenate([np.zeros((6, 6)), axes], axis=1))
+        K[link] += J.T @ checked("spring", stiffness, False) @ J
+    return replace(state, pencil=TreePencil(p.residual, p.M, p.C, K, p.links))
+
+
+def _of_link(p: TreePencil, link: int, moved: Array) -> Array:
+    """A motion over (ξ_a, ξ_b, β) of a link's ends, from (ξ_a, ρ, β)."""
+    at_b = moved[:, 6:12] @ p.links.to_child[link]
+    out = np.zeros((len(moved), p.K.shape[1]))
+    out[:, :6], out[:, 6:12] = moved[:, :6] + at_b, at_b
+    inner = min(moved.shape[1], out.shape[1]) - 12
+    out[:, 12 : 12 + inner] = moved[:, 12 : 12 + inner]
+    return out
+
+
+def _ends(beam: Blade, support: Support, elements: int) -> Array:
+    """(n + 1,) heights of the nodes."""
+    length = beam.length
+    heights = np.array([height for height, _ in support.springs])
+    soil = np.zeros((0, 2)) if support.soil is None else support.soil
+    for what, given in (("springs", heights), ("soil", soil[:, 0])):
+        if len(given) and not (-SAME * length <= given.min() <= given.max() <= (1 + SAME) * length):
+            raise ValueError(
+                f"{what}: heights from {given.min():g} to {given.max():g} m: the tower is {length:g} m high"
+            )
+    if len(soil) and ((np.diff(soil[:, 0]) <= 0).any() or (soil[:, 1] < 0).any()):
+        raise ValueError("soil: heights must ascend, and stiffness must not be negative")
+    ends = np.sort(np.concatenate([divide(beam, elements), heights]))
+    return ends[np.append(True, np.diff(ends) > SAME * length)]
+
+
+def _gauss(ends: Array, soil: Array) -> tuple[Array, Array]:
+    """Heights (q,) of Gauss points between nodes and the soil's points, and the stiffness (q,) of each, N/m."""
+    low, high = np.clip(soil[[0, -1], 0], ends[0], ends[-1])
+    grid = np.unique(np.concatenate([ends, soil[:, 0], [low, high]]))
+    grid = grid[(grid >= low) & (grid <= high)]
+    x, w = np.polynomial.legendre.leggauss(POINTS)
+    half = 0.5 * np.diff(grid)[:, None]
+    heights = 0.5 * (grid[1:] + grid[:-1])[:, None] + half * x
+    return heights.ravel(), (half * w * np.interp(heights, soil[:, 0], soil[:, 1])).ravel()
+
+
+def checked(name: str, stiffness: Array, positive: bool) -> Array:
+    """A (6, 6) stiffness; its directions with ``inf`` must not be coupled.
+
+    Raises:
+        ValueError: it is not symmetric, or not positive (semi-)definite.
+    """
+    K = np.asarray(stiffness, float)
+    if K.shape != (6, 6):
+        raise ValueError(f"{name}: shape {K.shape}: give 6 rows of 6 numbers")
+    free = np.isfinite(np.diagonal(K))
+    part = K[np.ix_(free, free)]
+    off = K.copy()
+    np.fill_diagonal(off, 0.0)
+    if off[~free].any() or off[:, ~free].any() or not np.isfinite(part).all():
+        raise ValueError(f"{name}: a direction that is clamped (inf on the diagonal) cannot be coupled with others")
+    d = np.sqrt(np.abs(np.diagonal(part)))
+    unit = np.where(d > 0, d, 1.0)
+    scaled = part / np.outer(unit, unit)
+    if np.abs(scaled - scaled.T).max(initial=0.0) > 1e-6:
+        raise ValueError(f"{name}: not symmetric: the stiffness of springs is; mirror one triangle")
+    least = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T)).min(initial=1.0))
+    if least < -1e-9 or (positive and least < 1e-9):
+        free_motion = (
+            "not positive in every direction: the tower moves freely" if positive else "negative in a direction"
+        )
+        raise ValueError(f"{name}: {free_motion}; check its signs")
+    out = K.copy()
+    out[np.ix_(free, free)] = 0.5 * (part + part.T)
+    return out
