@@ -18,13 +18,14 @@ from southwell.cases.judge.results import Cell, Run
 from southwell.cases.judge.spectrum import of_blade
 from southwell.cases.judge.uncertainty import Estimate
 from southwell.cases.judge.witnesses import witnesses
-from southwell.cases.plan import user_columns, user_results
+from southwell.cases.plan import measurements, names, user_columns, user_results
 from southwell.cases.plan.blade import blades
 from southwell.cases.plan.subject import speeds_of_blades
 from southwell.cases.verify import matrix
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
 from southwell.references.protocol import registry
+from southwell.references.protocol.description import describe
 from southwell.references.protocol.interface import BladeAdapter
 from southwell.reports.cli import app as cli
 
@@ -46,9 +47,33 @@ def park(speeds: tuple[float, ...] = (0.0, 10.0)):
     return replace(case, variants=(replace(variant, speeds=np.array(speeds)),))
 
 
-def run(*files: user_results.UserResults) -> Run:
+EXACT_SPEED = 7.0
+"""A speed between those of the case, rad/s."""
+
+LINES = [f"10, {value:.6f}, {name}" for name, value in EXACT.items()]
+
+FILES = {
+    "rig": HEAD + "\n".join([*LINES[:2], f"10, {EXACT['edgewise 2']:.1f}, edgewise 2", "10, 71.30, flapwise 2", "10, 190.1, 6",
+                             "10, 800, axial 1"]),
+    "few digits": HEAD + "10, 11.7, edgewise 1",
+    "rounded speed": "speed [rpm], frequency [rad/s], mode\n95.49, 15.400199, flapwise 1\n",
+}  # fmt: skip
+
+
+@pytest.fixture(scope="module")
+def judged(tmp_path_factory: pytest.TempPathFactory) -> Run:
+    """A run with all files, and two more at a speed that the case does not have: an exact number, and one 1 % larger."""
+    code, blade = registry.code("exact-beam"), library.load("park-cantilever").variants[0].blade
+    assert isinstance(code, BladeAdapter)
+    exact = float(code.solve(blade, EXACT_SPEED, code.levels[-1], 2).frequencies[0])
+    texts = {
+        **FILES,
+        "between": HEAD + f"7, {exact:.7f}, 1\n10, {EXACT['edgewise 1']:.6f}, edgewise 1",
+        "too large": HEAD + f"7, {1.01 * exact:.7f}, 1",
+    }
+    files = [read(tmp_path_factory.mktemp("file"), text, name) for name, text in texts.items()]
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(blades(park()), ["yoo-shin"], executor, user_results=files)
+        return matrix.run(blades(park()), ["yoo-shin"], executor, user_results=files, parts=False)
 
 
 def of(run: Run, name: str = "rig") -> list[Cell]:
@@ -80,10 +105,8 @@ def test_a_given_uncertainty_takes_the_place_of_the_digits(tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_numbers_are_judged_as_a_codes_are(tmp_path: Path) -> None:
-    lines = [f"10, {value:.6f}, {name}" for name, value in EXACT.items()]
-    right, coarse, wrong = lines[:2], f"10, {EXACT['edgewise 2']:.1f}, edgewise 2", "10, 71.30, flapwise 2"
-    cells = of(run(read(tmp_path, HEAD + "\n".join([*right, coarse, wrong, "10, 190.1, 6", "10, 800, axial 1"]))))
+def test_numbers_are_judged_as_a_codes_are(judged: Run) -> None:
+    cells = of(judged)
     assert [c.verdict for c in cells] == ["pass", "pass", "pass", "fail", "pass", "not applicable"]
     assert [f"{c.family} {c.mode}" for c in cells[:5]] == [
         "edgewise 1",
@@ -99,18 +122,17 @@ def test_numbers_are_judged_as_a_codes_are(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_few_digits_are_inconclusive_and_not_a_pass(tmp_path: Path) -> None:
+def test_few_digits_are_inconclusive_and_not_a_pass(judged: Run) -> None:
     """11.7 is 11.7 ± 0.05: 0.43 %, which is more than the target and says nothing within it."""
-    (cell,) = of(run(read(tmp_path, HEAD + "10, 11.7, edgewise 1")))
+    (cell,) = of(judged, "few digits")
     assert cell.verdict == "inconclusive"
     assert cell.uncertainty == pytest.approx(0.05 / 11.7, rel=1e-3)
 
 
 @pytest.mark.slow
-def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> None:
+def test_a_rounded_speed_finds_its_own_and_costs_certainty(judged: Run) -> None:
     """10 rad/s are 95.4930 rpm; printed as 95.49 the speed is off by 3e-5, and so may the frequency be."""
-    text = "speed [rpm], frequency [rad/s], mode\n95.49, 15.400199, flapwise 1\n"
-    (cell,) = of(run(read(tmp_path, text)))
+    (cell,) = of(judged, "rounded speed")
     off = 10.0 / (95.49 * math.pi / 30) - 1.0
     assert cell.omega == 10.0
     assert cell.uncertainty == pytest.approx(abs(off) + 0.5e-6 / 15.4, rel=1e-2)
@@ -118,16 +140,17 @@ def test_a_rounded_speed_finds_its_own_and_costs_certainty(tmp_path: Path) -> No
 
 
 @pytest.mark.slow
-def test_a_speed_between_those_of_the_case_is_solved_too(tmp_path: Path) -> None:
+def test_a_speed_between_those_of_the_case_is_solved_too(judged: Run) -> None:
     """At 7 rad/s, by the closed form of the exact beam; a value 1 % larger is a failure."""
-    code, blade = registry.code("exact-beam"), library.load("park-cantilever").variants[0].blade
-    assert isinstance(code, BladeAdapter)
-    exact = float(code.solve(blade, 7.0, code.levels[-1], 2).frequencies[0])
-    one, two = of(run(read(tmp_path, HEAD + f"7, {exact:.7f}, 1\n10, {EXACT['edgewise 1']:.6f}, edgewise 1")))
-    assert (one.omega, one.verdict) == (7.0, "pass")
-    assert (two.omega, two.verdict) == (10.0, "pass")
-    (wrong,) = of(run(read(tmp_path, HEAD + f"7, {1.01 * exact:.7f}, 1")))
-    assert wrong.verdict == "fail"
+    assert [(c.omega, c.verdict) for c in of(judged, "between")] == [(EXACT_SPEED, "pass"), (10.0, "pass")]
+    assert [(c.omega, c.verdict) for c in of(judged, "too large")] == [(EXACT_SPEED, "fail")]
+
+
+@pytest.mark.slow
+def test_what_is_added_declares_no_origin_and_is_in_no_group(judged: Run) -> None:
+    (rounded,) = (w for w in witnesses(judged, "park-cantilever") if w.name == "rounded speed")
+    assert (rounded.kind, rounded.standing) == ("undeclared", "agrees")
+    assert judged.versions["rig"] == "results in results.csv"
 
 
 def test_the_output_of_bmodes_is_read_with_the_speed_of_its_input(tmp_path: Path) -> None:
@@ -146,14 +169,6 @@ def test_the_output_of_bmodes_is_read_with_the_speed_of_its_input(tmp_path: Path
     assert one.value.value == pytest.approx(2 * math.pi * 0.6711)
     assert one.value.uncertainty == pytest.approx(0.5e-4 / 0.6711)
     assert two.value.uncertainty == pytest.approx(0.5e-3 / 1.087)
-
-
-@pytest.mark.slow
-def test_what_is_added_declares_no_origin_and_is_in_no_group(tmp_path: Path) -> None:
-    one = run(read(tmp_path, HEAD + "10, 11.710953, edgewise 1"))
-    (rig,) = (w for w in witnesses(one, "park-cantilever") if w.name == "rig")
-    assert (rig.kind, rig.standing) == ("undeclared", "agrees")
-    assert one.versions["rig"] == "results in results.csv"
 
 
 BAD = [
@@ -204,57 +219,51 @@ def test_not_text_and_not_there(tmp_path: Path) -> None:
         user_results.read("rig", tmp_path / "binary.csv")
 
 
+NOT_OF_THE_RUN = [
+    (
+        "park-cantilever",
+        HEAD + "31, 11.7, edgewise 1\n",
+        "line 2: speed: 31 rad/s is above the highest speed of park-c",
+    ),
+    ("park-blade", HEAD + "0, 5.8, flapwise 1\n", "line 2: blade: not given, and the run has 3: add a column"),
+    (
+        "park-blade",
+        HEAD.replace("mode", "mode, blade") + "0, 5.8, flapwise 1, park-blade/windpakt\n",
+        "line 2: blade: 'park-blade/windpakt' is not in this run: did you mean park-blade/windpact?",
+    ),
+]
+
+
+@pytest.mark.parametrize(("case", "text", "words"), NOT_OF_THE_RUN)
+def test_what_is_not_of_the_run_is_bad_input(tmp_path: Path, case: str, text: str, words: str) -> None:
+    with pytest.raises(CaseError) as caught:
+        user_results.check([read(tmp_path, text)], speeds_of_blades(blades(library.load(case))), ["yoo-shin"])
+    assert words in str(caught.value)
+    assert "\n" not in str(caught.value)
+
+
 @pytest.mark.slow
-@pytest.mark.parametrize(
-    ("case", "text", "words"),
-    [
-        (
-            "park-cantilever",
-            HEAD + "31, 11.7, edgewise 1\n",
-            "line 2: speed: 31 rad/s is above the highest speed of park-c",
-        ),
-        ("park-blade", HEAD + "0, 5.8, flapwise 1\n", "line 2: blade: not given, and the run has 3: add a column"),
-        (
-            "park-blade",
-            HEAD.replace("mode", "mode, blade") + "0, 5.8, flapwise 1, park-blade/windpakt\n",
-            "line 2: blade: 'park-blade/windpakt' is not in this run: did you mean park-blade/windpact?",
-        ),
-    ],
-)
-def test_what_is_not_of_the_run_is_bad_input(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], case: str, text: str, words: str
-) -> None:
-    path = tmp_path / "results.csv"
+def test_bad_input_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path, (case, text, words) = tmp_path / "results.csv", NOT_OF_THE_RUN[0]
     path.write_text(text)
     with pytest.raises(SystemExit) as ended:
         cli.main(["verify", case, "--codes", "yoo-shin", "--add", f"rig={path}", "--out", str(tmp_path / "out")])
     assert ended.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert words in line
-    assert not (tmp_path / "out").exists()  # nothing is overwritten by a run that cannot be
+    assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("add", "words"),
-    [
-        ("results.csv", "--add results.csv: give a name and a file, as in --add rig=results.csv"),
-        ("=results.csv", "give a name and a file"),
-        ("rig=", "give a name and a file"),
-        ("yoo-shin={}", "code: 'yoo-shin' is given twice, by --codes yoo-shin and by --add "),
-    ],
-)
-def test_names_are_needed_and_their_own(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], add: str, words: str
-) -> None:
-    path = tmp_path / "results.csv"
-    path.write_text(HEAD + "10, 11.7, edgewise 1\n")
-    arguments = ["verify", "park-cantilever", "--codes", "yoo-shin", "--add", add.format(path)]
-    with pytest.raises(SystemExit) as ended:
-        cli.main([*arguments, "--out", str(tmp_path / "out")])
-    assert ended.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert words in line
+@pytest.mark.parametrize("add", ["results.csv", "=results.csv", "rig="])
+def test_a_name_and_a_file_are_needed(add: str) -> None:
+    with pytest.raises(CaseError, match=f"--add {add}: give a name and a file, as in --add rig=results.csv"):
+        measurements.user_results(add, measurements.defaults(None, None))
+
+
+def test_a_file_cannot_have_the_name_of_a_code(tmp_path: Path) -> None:
+    rig = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n", "yoo-shin")
+    with pytest.raises(CaseError, match="code: 'yoo-shin' is given twice, by --codes yoo-shin and by --add "):
+        names.unique(blades(park()), describe(["yoo-shin"], []), [rig])
 
 
 def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
@@ -273,14 +282,14 @@ def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Referen
 
 
 @pytest.mark.parametrize(
-    ("names", "verdict"),
+    ("families", "verdict"),
     [(("mixed", "mixed", "flapwise"), "inconclusive"), (("edgewise", "torsion", "flapwise"), "fail")],
 )
 def test_a_family_is_a_convention_only_where_core_has_mixed_modes(
-    tmp_path: Path, names: tuple[str, ...], verdict: str
+    tmp_path: Path, families: tuple[str, ...], verdict: str
 ) -> None:
     """5.355 is core's second mode, named flapwise: an error, unless core itself cannot name a mode."""
-    core = [(1.0, hand_made(names, (5.2, 5.355, 7.8)))]
+    core = [(1.0, hand_made(families, (5.2, 5.355, 7.8)))]
     head = Head("blade", "rig", "from results.csv", "code", 1e-3, "nothing")
     rows = read(tmp_path, HEAD + "1.0000, 5.35500, flapwise 1\n1.0000, 5.35500, 2").rows
     rows = [*rows, *read(tmp_path, HEAD + "1.0000, 6.50000, flapwise 1").rows]
