@@ -1,11 +1,12 @@
 """Writes the site: pages for the matrix, for each case and code, and for the history, with style and scripts."""
 
 import json
+from functools import cache
 from importlib.resources import files
 from pathlib import Path
 from typing import Any
 
-from jinja2 import Environment, PackageLoader, StrictUndefined
+from jinja2 import Environment, PackageLoader, StrictUndefined, Template
 from markupsafe import Markup
 
 from ...cases.input import atomic
@@ -75,6 +76,14 @@ def _run(run: Run, name: str, folder: Path, shared: dict[str, Any]) -> None:
 
 def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]) -> str:
     """One page, with its data as JSON, escaped so that text from a case cannot end the element or begin another."""
+    text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
+    for sign in "<>&\u2028\u2029":
+        text = text.replace(sign, f"\\u{ord(sign):04x}")
+    return _template().render(kind=kind, policy=POLICY, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)
+
+
+@cache
+def _template() -> Template:
     environment = Environment(
         loader=PackageLoader(__package__ or "", "templates"),
         undefined=StrictUndefined,
@@ -82,8 +91,4 @@ def _page(kind: str, title: str, content: dict[str, Any], shared: dict[str, Any]
         trim_blocks=True,
         lstrip_blocks=True,
     )
-    text = json.dumps(content, ensure_ascii=False, separators=(",", ":"), allow_nan=False)
-    for sign in "<>&\u2028\u2029":
-        text = text.replace(sign, f"\\u{ord(sign):04x}")
-    template = environment.get_template("page.html.jinja")
-    return template.render(kind=kind, policy=POLICY, title=title, data=Markup(text), scripts=SCRIPTS[kind], **shared)
+    return environment.get_template("page.html.jinja")

@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from datetime import UTC, datetime, timedelta
+from functools import cache
 from pathlib import Path
 
 from southwell.cases.judge.results import Level, Run
@@ -17,6 +18,7 @@ ABSENT = "drake"  # in no answer of any run
 LOST = "pinocchio"  # in none of the last
 
 
+@cache
 def run() -> Run:
     """The README's rows, of a machine without one of the codes; refinements, which they lack, of order 4 towards core."""
     plain = results_file.read(readme.ROWS)
@@ -32,6 +34,7 @@ def run() -> Run:
     return replace(plain, cells=(*(c for c in plain.cells if c.code != ABSENT), *absent.values()), levels=levels)
 
 
+@cache
 def hostile() -> Run:
     """One case and one code of theirs under other names."""
     plain, name = run(), run().cells[0].case
