@@ -23,9 +23,8 @@ from numpy.typing import NDArray
 from scipy import sparse
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped
-from ...core.space.spatial import skew
 from ..sampling import mass_at, points, stiffness_at
-from ..theories.reference_line import element_ends, line, root_axes
+from ..theories.reference_line import element_ends, frames, lumps, root_axes
 from ..theories.spectral import intervals
 
 Array = NDArray[np.float64]
@@ -80,18 +79,18 @@ def hinge_segments(blade: Blade, elements: int, omega: float = 0.0, equal: bool 
     """
     ends = np.linspace(0.0, blade.length, elements + 1) if equal else _ends(blade, elements, omega)
     hinges = _hinges(blade, ends)
-    position, axes = _frames(blade, hinges)
+    position, axes = frames(blade, hinges)
     soft = np.isfinite(np.diagonal(blade.stiffness[0]))
     slide, rotations = [s for s in SLIDE if soft[s]], [s for s in TURN if soft[s]]
     hinge = np.array([*slide, *rotations, *rotations[-2::-1], *slide[::-1]])
     stiffness = list(_stiffness(blade, ends, axes, hinge))
     joints = [hinge] * (len(ends) - 1)
-    reach = (np.swapaxes(axes, 1, 2) @ (_frames(blade, ends[1:])[0] - position)[..., None])[..., 0]
+    reach = (np.swapaxes(axes, 1, 2) @ (frames(blade, ends[1:])[0] - position)[..., None])[..., 0]
     if not clamped(blade):
         free = np.flatnonzero(np.isfinite(blade.root))  # axes in ``JOINT``'s order, as strains are
         joints, stiffness = [free, *joints], [np.diag(blade.root[free]), *stiffness]
         hinges, reach = np.append(0.0, hinges), np.concatenate([np.zeros((1, 3)), reach])
-        position = np.concatenate([_frames(blade, hinges[:1])[0], position])
+        position = np.concatenate([frames(blade, hinges[:1])[0], position])
         axes = np.concatenate([root_axes(blade)[None], axes])
     count = np.array([len(joint) for joint in joints])
     first = np.cumsum(count) - count
@@ -100,7 +99,7 @@ def hinge_segments(blade: Blade, elements: int, omega: float = 0.0, equal: bool 
     offset, joint_rotation = np.zeros((n, 3)), np.tile(np.eye(3), (n, 1, 1))
     offset[first] = (to_previous @ np.diff(position, axis=0, prepend=0.0)[..., None])[..., 0]
     joint_rotation[first] = to_previous @ axes
-    mass, centre, inertia = _segments(blade, hinges, position, axes)
+    mass, centre, inertia = lumps(blade, hinges, position, axes)
     full = sparse.csr_array(sparse.block_diag(stiffness))
     own: Array = full.diagonal().astype(float)
     coupling = full - sparse.diags_array(own)
@@ -134,12 +133,6 @@ def _ends(blade: Blade, elements: int, omega: float) -> Array:
     layer = LAYER * np.sqrt(bend / tension) / blade.length
     equal = np.linspace(0.0, 1.0, elements + 1)
     return blade.length * np.append(layer * np.expm1(equal[:-1] * np.log1p(1.0 / layer)), 1.0)
-
-
-def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
-    """Positions (k, 3) and axes (k, 3, 3) of sections, in the hub's axes."""
-    at = line(blade, s[:, None])
-    return at.position[:, 0], at.axes[:, 0]
 
 
 def _pieces(blade: Blade, ends: Array) -> Array:
@@ -176,7 +169,7 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     own = np.zeros((len(s), 6, 6))
     own[:, strains[:, None], strains] = section
     R = np.zeros((len(s), 6, 6))
-    R[:, :3, :3] = R[:, 3:, 3:] = np.swapaxes(axes[element], 1, 2) @ _frames(blade, s)[1]
+    R[:, :3, :3] = R[:, 3:, 3:] = np.swapaxes(axes[element], 1, 2) @ frames(blade, s)[1]
     compliance = np.zeros((len(ends) - 1, 6, 6))
     np.add.at(compliance, element, weight[:, None, None] * (R @ own @ np.swapaxes(R, 1, 2)))
     stiffness = np.zeros_like(compliance)
@@ -189,32 +182,9 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     return out + apart * np.diagonal(out, axis1=1, axis2=2)[:, None, :]
 
 
-def _segments(blade: Blade, hinges: Array, position: Array, axes: Array) -> tuple[Array, Array, Array]:
-    """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of the segment from each hinge to the next, or to the tip."""
-    ends = np.union1d(np.append(hinges, blade.length), blade.stations[blade.stations > hinges[0]])
-    s, weight = (part.ravel() for part in points(ends, 3))
-    body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
-    s = np.append(s, blade.length)
-    hinge = np.searchsorted(hinges, s) - 1
-    centres, section = _frames(blade, s)
-    to_hinge = np.swapaxes(axes[hinge], 1, 2)
-    to_hinge_axes, lever = to_hinge @ section, skew((to_hinge @ (centres - position[hinge])[..., None])[..., 0])
-    to_section_axes = np.swapaxes(to_hinge_axes, 1, 2)
-    m = body[:, 0, 0]
-    offset = to_hinge_axes @ -body[:, :3, 3:] @ to_section_axes  # momentum m (v + ω × c) makes the block -m [c]×
-    first = offset + m[:, None, None] * lever
-    second = to_hinge_axes @ body[:, 3:, 3:] @ to_section_axes - first @ lever - lever @ offset
-    sums = [np.zeros((len(hinges), *part.shape[1:])) for part in (m, first, second)]
-    for total, part in zip(sums, (m, first, second), strict=True):
-        np.add.at(total, hinge, part)
-    mass, first, second = sums
-    centre = first / mass[:, None, None]
-    return mass, centre[:, [2, 0, 1], [1, 2, 0]], second + mass[:, None, None] * centre @ centre
-
-
 def root_segment(blade: Blade, start: float) -> tuple[Array, Array, Array]:
     """Mass, centre (3,) and inertia about it (3, 3) of the part before the first hinge, in the hub's axes."""
     at = np.array([0.0, start])
-    position, _ = _frames(blade, at)
-    mass, centre, inertia = _segments(blade, at, position, np.tile(np.eye(3), (2, 1, 1)))
+    position, _ = frames(blade, at)
+    mass, centre, inertia = lumps(blade, at, position, np.tile(np.eye(3), (2, 1, 1)))
     return mass[0], position[0] + centre[0], inertia[0]

@@ -10,7 +10,7 @@ which it would make periodic.
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, straight
+from ...core.blade import BEND_Y, BEND_Z, Blade
 from ...core.effects import ALL_EFFECTS
 from ...core.rotor.turbine import Turbine
 from ..matrices import rotating
@@ -47,16 +47,10 @@ class ExudynTurbine(TurbineAdapter):
     distribution = ex.DISTRIBUTION
 
     def unsupported_turbine(self, turbine: Turbine) -> str | None:
-        """A reason if the tower is not straight and clamped, or the line of the blades has kinks."""
+        """A reason as ``turbine_tree.outside``, or if a beam is rigid in bending."""
         tower, blade = turbine.tower, turbine.blade
-        if not (straight(tower) and clamped(tower)) or tower.twist.any():
-            return "the tower is not straight, without twist and clamped"
-        if not turbine.support.rigid:
-            return "the tower stands on springs"
-        if not clamped(blade):
-            return "the blades are not clamped to the hub"
-        if blade.kinks:
-            return f"a kink at {blade.kinks[0]:g} m: all sections of an element use the axes of its hinge"
+        if reason := turbine_tree.outside(turbine):
+            return reason
         if any(np.isinf(b.stiffness[:, [BEND_Y, BEND_Z], [BEND_Y, BEND_Z]]).any() for b in (tower, blade)):
             return "rigid in bending: a hinge needs finite EI_y and EI_z"
         return None

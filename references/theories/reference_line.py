@@ -13,7 +13,8 @@ from scipy.interpolate import make_interp_spline
 from scipy.spatial.transform import Rotation
 
 from ...core.blade import Blade, straight
-from ..sampling import points, stiffness_at, twist_at
+from ...core.space.spatial import skew
+from ..sampling import mass_at, points, stiffness_at, twist_at
 from .spectral import intervals
 
 Array = NDArray[np.float64]
@@ -69,6 +70,12 @@ def line(blade: Blade, s: Array) -> ReferenceLine:
     return ReferenceLine(hub + position @ root.T, slope @ root.T, root @ axes)
 
 
+def frames(blade: Blade, s: Array) -> tuple[Array, Array]:
+    """Positions (k, 3) and axes (k, 3, 3) of sections, in the hub's axes."""
+    at = line(blade, s[:, None])
+    return at.position[:, 0], at.axes[:, 0]
+
+
 def moments(mass: Array) -> Array:
     """(…, 4, 4) ``∫ Y Yᵀ dm`` with Y = (y, 1), y from the reference point, of bodies with inertia ``mass`` (…, 6, 6).
 
@@ -81,6 +88,32 @@ def moments(mass: Array) -> Array:
         out[..., i, 3] = out[..., 3, i] = 0.5 * (moment[..., j, k] - moment[..., k, j])
     out[..., 3, 3] = np.trace(mass[..., :3, :3], axis1=-2, axis2=-1) / 3.0
     return out
+
+
+def lumps(blade: Blade, begins: Array, position: Array, axes: Array) -> tuple[Array, Array, Array]:
+    """Mass (e,), centre (e, 3) and inertia about it (e, 3, 3) of the segment from each beginning to the next, or to the tip.
+
+    They are in frames at ``position`` (e, 3) with ``axes`` (e, 3, 3); ``begins`` (e,) are arc lengths. The tip mass is in them.
+    """
+    ends = np.union1d(np.append(begins, blade.length), blade.stations[blade.stations > begins[0]])
+    s, weight = (part.ravel() for part in points(ends, 3))
+    body = np.concatenate([weight[:, None, None] * mass_at(blade, s), blade.tip_mass[None]])
+    s = np.append(s, blade.length)
+    hinge = np.searchsorted(begins, s) - 1
+    centres, section = frames(blade, s)
+    to_hinge = np.swapaxes(axes[hinge], 1, 2)
+    to_hinge_axes, lever = to_hinge @ section, skew((to_hinge @ (centres - position[hinge])[..., None])[..., 0])
+    to_section_axes = np.swapaxes(to_hinge_axes, 1, 2)
+    m = body[:, 0, 0]
+    offset = to_hinge_axes @ -body[:, :3, 3:] @ to_section_axes  # momentum m (v + ω × c) makes the block -m [c]×
+    first = offset + m[:, None, None] * lever
+    second = to_hinge_axes @ body[:, 3:, 3:] @ to_section_axes - first @ lever - lever @ offset
+    sums = [np.zeros((len(begins), *part.shape[1:])) for part in (m, first, second)]
+    for total, part in zip(sums, (m, first, second), strict=True):
+        np.add.at(total, hinge, part)
+    mass, first, second = sums
+    centre = first / mass[:, None, None]
+    return mass, centre[:, [2, 0, 1], [1, 2, 0]], second + mass[:, None, None] * centre @ centre
 
 
 def element_ends(blade: Blade, elements: int, most: int, step_elements: bool = True) -> Array:

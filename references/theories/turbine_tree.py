@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
+from ...core.blade import clamped, straight
 from ...core.modes import STATIONS
 from ...core.rotor.turbine import Turbine
 from ...core.space.spatial import rotation, skew
@@ -97,6 +98,20 @@ class Chain:
     reach: Array
     arc: Array
     tip: tuple[Array, Array]
+
+
+def outside(turbine: Turbine) -> str | None:
+    """What of a turbine cannot be placed here: a bent, twisted or sprung tower, blades on hinges or with kinks; or None."""
+    tower, blade = turbine.tower, turbine.blade
+    if not turbine.support.rigid:
+        return "the tower is held by springs"
+    if not (straight(tower) and clamped(tower)) or tower.twist.any():
+        return "the tower is not straight, without twist and clamped"
+    if not clamped(blade):
+        return "the blades are not clamped to the hub"
+    if blade.kinks:
+        return f"a kink at {blade.kinks[0]:g} m: elements end at equal distances"
+    return None
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""Exudyn's turbine against core's: frequencies extrapolated from two refinements, and shapes at the common stations."""
+"""Turbines of other codes against core's: frequencies extrapolated from two refinements, and shapes at the common stations."""
 
 from dataclasses import replace
 
@@ -9,10 +9,14 @@ from southwell.core.blade import AXIAL, TORSION, Blade
 from southwell.core.rotor.stations import weights
 from southwell.core.rotor.turbine import Drivetrain, Turbine, machine
 from southwell.core.rotor.turbine_modes import TurbineModes, turbine_modes
-from southwell.references.exudyn.turbine import CODE
+from southwell.references.exudyn.turbine import CODE as EXUDYN
+from southwell.references.joint_chains.pinocchio_turbine import CODE as PINOCCHIO
+from southwell.references.protocol.turbines import TurbineAdapter
 from southwell.tests.support.turbines import small
 
 OMEGA, COUNT = 4.0, 8
+
+CODES = (EXUDYN, PINOCCHIO)
 
 TURBINES = {
     "rigid shaft": small(),
@@ -36,21 +40,29 @@ def bending_only(beam: Blade) -> Blade:
     return replace(beam, stiffness=stiffness)
 
 
-@pytest.mark.parametrize("name", TURBINES)
-def test_the_limit_of_two_refinements_is_cores(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "code"),
+    [
+        ("rigid shaft", EXUDYN),
+        ("locked generator", PINOCCHIO),
+        *(("free generator", code) for code in CODES),
+    ],
+)
+def test_the_limit_of_two_refinements_is_cores(name: str, code: TurbineAdapter) -> None:
     turbine = replace(
         TURBINES[name], tower=bending_only(small().tower), blade=bending_only(small().blade), gravity=30.0
     )
     core = turbine_modes(machine(turbine), OMEGA, COUNT)
-    coarse, fine = (np.abs(CODE.turbine_modes(turbine, OMEGA, n, COUNT).values) for n in (6, 9))
+    coarse, fine = (np.abs(code.turbine_modes(turbine, OMEGA, n, COUNT).values) for n in (6, 9))
     limit = fine + (fine - coarse) / (1.5**2 - 1.0)
     np.testing.assert_allclose(limit, core.frequencies, rtol=1e-3)
 
 
-def test_shapes_are_those_of_core() -> None:
+@pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
+def test_shapes_are_those_of_core(code: TurbineAdapter) -> None:
     turbine = TURBINES["locked generator"]
     core = turbine_modes(machine(turbine), OMEGA, 6)
-    answer = CODE.turbine_modes(turbine, OMEGA, 6, 6)
+    answer = code.turbine_modes(turbine, OMEGA, 6, 6)
     mac = macs(turbine, core, answer.shapes)
     assert np.diagonal(mac).min() > 0.999
     assert (mac - np.diag(np.diagonal(mac))).max() < 0.5

@@ -1,0 +1,238 @@
+"""A whole turbine in Pinocchio: lumped bodies on elastic elements whose compliance is integrated here.
+
+Tower and blades are divided at equal distances. The body at a node is what lies between the middles of its elements; an element
+is a joint with the element's whole compliance at its outer end, ``∫ Gᵀ c G ds`` with the compliance c of the sections and the
+wrench G in them. This is a lumped model of second order. Nothing of core's discretisation is used.
+
+Pinocchio computes inertia forces and their derivatives for the machine without blades and with one blade, at the azimuth of
+each blade. Inertia forces are sums over bodies, so these add up to the machine with all blades, while the workspace, which has
+arrays of n³ numbers, is that of one blade. Fourier coordinates of the blades remove the azimuth (``matrices.rotating``).
+"""
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...core.blade import Blade
+from ...core.effects import ALL_EFFECTS
+from ...core.rotor.turbine import Turbine
+from ...core.space.spatial import skew
+from ..matrices import rotating
+from ..protocol.interface import REFERENCE_LINE, CodeError, Independence, extra
+from ..protocol.turbines import TurbineAdapter, TurbineModes
+from ..sampling import points, stiffness_at
+from ..theories import turbine_tree
+from ..theories.reference_line import frames, lumps
+from ..theories.turbine_tree import NOTHING, Body, Chain, TurbineTree
+
+Array = NDArray[np.float64]
+Index = NDArray[np.intp]
+
+STEPS = 60
+"""Largest number of Newton steps to the steady state of a blade."""
+
+SOFT = 1e-14
+"""Smallest compliance of a joint, relative to the largest of its kind, that has a coordinate."""
+
+
+class PinocchioTurbine(TurbineAdapter):
+    """See the module."""
+
+    name = "pinocchio-turbine"
+    title = "Pinocchio, lumped bodies of the turbine"
+    independence = Independence(
+        "Pinocchio",
+        "lumped bodies on elements of integrated compliance",
+        "Pinocchio, derivatives of recursive Newton-Euler",
+        sections=REFERENCE_LINE,
+        eigensolver="the adapters' own, in Fourier coordinates of the blades",
+    )
+    effects = ALL_EFFECTS
+    levels = (10, 15, 22)
+    order = 2
+    finest = 32
+    hint = extra("codes")
+    distribution = "pin"
+
+    def unsupported_turbine(self, turbine: Turbine) -> str | None:
+        """A reason as ``turbine_tree.outside``."""
+        return turbine_tree.outside(turbine)
+
+    def turbine_modes(self, turbine: Turbine, omega: float, elements: int, count: int) -> TurbineModes:
+        """The lowest modes; see ``protocol.turbines``.
+
+        Raises:
+            CodeError: no steady state at this speed, or equations that change with the azimuth.
+        """
+        tree = turbine_tree.build(turbine, chain(turbine.tower, elements), chain(turbine.blade, elements))
+        base = np.arange(tree.hub + 1)
+        bare = _Plant(tree, base, tree.bodies)
+        single = _Plant(tree, np.append(base, tree.blades[0]), tree.bodies)
+        q = np.zeros(len(tree.strain))
+        q[tree.tower], weight = turbine_tree.standing(tree)
+        q[tree.blades] = at_blade = _steady(tree, single, omega)
+        own = np.ix_(base, base)
+
+        def at(psi: float) -> tuple[Array, Array, Array]:
+            out = [np.zeros((len(q), len(q))) for _ in range(3)]
+            whole = bare.linearized(q[base], omega, psi)
+            for total, part in zip(out, whole, strict=True):
+                total[own] += part
+            for k, joints in enumerate(tree.blades):
+                index = np.append(base, joints)
+                azimuth = psi + 2.0 * np.pi * k / turbine.blades
+                one = single.linearized(np.append(q[base], at_blade), omega, azimuth)
+                for total, part, less in zip(out, one, whole, strict=True):
+                    total[np.ix_(index, index)] += part
+                    total[own] -= less
+            M, C, K = out
+            K = K + tree.stiffness
+            K[np.ix_(tree.tower, tree.tower)] += weight
+            return turbine_tree.with_generator(tree, q, M, C, K)
+
+        groups = [[int(k) - 1 for k in joint] for joint in tree.blades.T]  # without the azimuth
+        scale = _frequency(tree, single, at_blade, omega)
+        values, x = rotating.lowest(at, omega, groups, count, scale, turbine.drivetrain.free)
+        full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
+        return TurbineModes(values, turbine_tree.shapes(tree, q, full), elements)
+
+
+def chain(blade: Blade, elements: int) -> Chain:
+    """A beam as lumped bodies on elastic joints at the ends of equal elements."""
+    arc = np.linspace(0.0, blade.length, elements + 1)
+    position, axes = frames(blade, arc)
+    begins = np.concatenate([[0.0], 0.5 * (arc[1:] + arc[:-1])])
+    mass, centre, moments = lumps(blade, begins, position, axes)
+    compliance = _compliance(blade, arc, position, axes)
+    sizes = np.diagonal(compliance, axis1=1, axis2=2)
+    largest = np.repeat([sizes[:, :3].max(), sizes[:, 3:].max()], 3)
+    soft = np.flatnonzero((sizes > SOFT * largest).all(0))
+    if not len(soft):
+        raise CodeError(f"{blade.name}: rigid: nothing vibrates")
+    per, zero, one = len(soft), np.zeros(3), np.eye(3)
+    offset, turned, bodies = [], [], []
+    stiffness = np.zeros((elements * per, elements * per))
+    for k in range(elements):
+        to = axes[k].T if k else np.eye(3)
+        arm = position[k + 1] - position[k] if k else position[1]
+        offset += [to @ arm, *[zero] * (per - 1)]
+        turned += [to @ axes[k + 1], *[one] * (per - 1)]
+        bodies += [*[NOTHING] * (per - 1), Body(mass[k + 1], centre[k + 1], moments[k + 1])]
+        own = slice(k * per, (k + 1) * per)
+        stiffness[own, own] = np.linalg.inv(compliance[k][np.ix_(soft, soft)])
+    return Chain(
+        strain=np.tile(soft, elements),
+        stiffness=stiffness,
+        offset=np.array(offset),
+        axes=np.array(turned),
+        bodies=tuple(bodies),
+        root=Body(mass[0], centre[0], moments[0]).moved(position[0], axes[0]),
+        base=position[0],
+        nodes=np.arange(1, elements + 1) * per - 1,
+        reach=np.zeros((elements, 3)),
+        arc=arc[1:],
+        tip=(zero, one),
+    )
+
+
+def _compliance(blade: Blade, arc: Array, position: Array, axes: Array) -> Array:
+    """(e, 6, 6) displacement and rotation of the outer end of each element under forces and moments there, in its axes."""
+    pieces = np.union1d(arc, blade.stations)
+    s, weight = (part.ravel() for part in points(pieces, 6))
+    element = np.searchsorted(arc, s) - 1
+    at, section = frames(blade, s)
+    end = axes[element + 1]
+    local = np.swapaxes(section, 1, 2) @ end
+    G = np.zeros((len(s), 6, 6))
+    G[:, :3, :3] = G[:, 3:, 3:] = local
+    arm = (np.swapaxes(end, 1, 2) @ (position[element + 1] - at)[..., None])[..., 0]
+    G[:, 3:, :3] = local @ skew(arm)
+    stiffness = stiffness_at(blade, s)
+    strains = np.flatnonzero(np.isfinite(np.diagonal(blade.stiffness[0])))
+    c = np.zeros((len(s), 6, 6))
+    c[:, strains[:, None], strains] = np.linalg.inv(stiffness[:, strains[:, None], strains])
+    out = np.zeros((len(arc) - 1, 6, 6))
+    np.add.at(out, element, weight[:, None, None] * (np.swapaxes(G, 1, 2) @ c @ G))
+    return out
+
+
+class _Plant:
+    """Some links of a tree in Pinocchio, in ascending order, each after its parent."""
+
+    def __init__(self, tree: TurbineTree, links: Index, bodies: tuple[Body, ...]) -> None:
+        import pinocchio
+
+        self.pin: Any = pinocchio
+        self.spin = tree.spin
+        kinds = (
+            pinocchio.JointModelPX,
+            pinocchio.JointModelPY,
+            pinocchio.JointModelPZ,
+            pinocchio.JointModelRX,
+            pinocchio.JointModelRY,
+            pinocchio.JointModelRZ,
+        )
+        self.model: Any = pinocchio.Model()
+        self.model.gravity.setZero()
+        place = {-1: 0}
+        for k in links.tolist():
+            pose = pinocchio.SE3(tree.axes[k], tree.offset[k])
+            joint = self.model.addJoint(place[int(tree.parent[k])], kinds[tree.strain[k]](), pose, f"{k}")
+            place[k] = joint
+            body = bodies[k]
+            if body.mass or body.moments.any():
+                inertia = pinocchio.Inertia(body.mass, body.centre, body.moments)
+                self.model.appendBodyToJoint(joint, inertia, pinocchio.SE3.Identity())
+        self.data: Any = self.model.createData()
+
+    def forces(self, q: Array, omega: float, psi: float) -> tuple[Array, Array, Array]:
+        """Inertia forces (n,) in steady rotation, and their derivatives (n, n) by coordinates and rates."""
+        at, v = q.copy(), np.zeros_like(q)
+        at[self.spin], v[self.spin] = psi, omega
+        self.pin.computeRNEADerivatives(self.model, self.data, at, v, np.zeros_like(v))
+        return self.data.tau.copy(), self.data.dtau_dq.copy(), self.data.dtau_dv.copy()
+
+    def linearized(self, q: Array, omega: float, psi: float) -> tuple[Array, Array, Array]:
+        """M, C, K (n, n) of the inertia forces."""
+        _, K, C = self.forces(q, omega, psi)
+        at = q.copy()
+        at[self.spin] = psi
+        M = np.triu(self.pin.crba(self.model, self.data, at))
+        return M + np.triu(M, 1).T, C, K
+
+
+def _steady(tree: TurbineTree, single: _Plant, omega: float) -> Array:
+    """Coordinates (b,) of a blade in balance at a speed, rad/s, on a hub that only spins.
+
+    Raises:
+        CodeError: Newton's method does not converge.
+    """
+    joints = tree.blades[0]
+    first = single.model.nv - len(joints)
+    elastic = tree.stiffness[np.ix_(joints, joints)]
+    q = np.zeros(single.model.nv)
+    last = np.inf
+    for _ in range(STEPS):
+        force, stiffness, _ = single.forces(q, omega, 0.0)
+        residual = force[first:] + elastic @ q[first:]
+        step = np.linalg.solve(elastic + stiffness[first:, first:], -residual)
+        size = float(np.abs(step).max(initial=0.0))
+        q[first:] += step * min(1.0, 0.3 / max(size, 0.3))
+        if size < 1e-13 or (size < 1e-9 and size > 0.3 * last):
+            return q[first:]
+        last = size
+    raise CodeError(f"omega: {omega:g} rad/s: the blade finds no steady state; lower the speed")
+
+
+def _frequency(tree: TurbineTree, single: _Plant, at_blade: Array, omega: float) -> float:
+    """A typical frequency, rad/s: that of a blade under a uniform load, by Rayleigh's quotient."""
+    joints = tree.blades[0]
+    first = single.model.nv - len(joints)
+    M, _, K = single.linearized(np.append(np.zeros(first), at_blade), omega, 0.0)
+    M, K = M[first:, first:], K[first:, first:] + tree.stiffness[np.ix_(joints, joints)]
+    bent = np.linalg.solve(K, M @ np.ones(len(joints)))
+    return float(np.sqrt(abs(bent @ K @ bent / (bent @ M @ bent))))
+
+
+CODE = PinocchioTurbine()
