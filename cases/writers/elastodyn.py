@@ -10,13 +10,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, straight
-from ..campbell.elastodyn_shapes import polynomials
 from ..input import atomic
 from ..input.errors import CaseError
 from ..input.readers.openfast.elastodyn import COLUMNS, MULTIPLIERS
 from ..input.readers.openfast.elastodyn_unused import DAMPING
 from ..input.readers.source import Mount, Unused
 from ..input.readers.text import fortran
+from .elastodyn_shapes import polynomials
 
 Array = NDArray[np.float64]
 
@@ -31,7 +31,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
     Args:
         blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia, as the format requires.
         path: path of the file.
-        omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.campbell.elastodyn_shapes``).
+        omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.writers.elastodyn_shapes``).
         given: unused quantities of the blade's original file; those in ``CARRIED`` are written.
 
     Raises:

@@ -7,10 +7,10 @@ import numpy as np
 from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.campbell.elastodyn_shapes import as_it_is, polynomials
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.plan.user_results import UserResults
+from ...cases.writers.elastodyn_shapes import as_it_is, polynomials
 from ..shared.style import house, save
 from ..shared.units import Units
 from . import cover, csv_tables, encounters, shapes, span

@@ -13,8 +13,8 @@ from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
 from ...cases.campbell.diagram import Campbell
-from ...cases.campbell.elastodyn_shapes import ELASTODYN_NAMES, POWERS, Polynomial
 from ...cases.input import atomic
+from ...cases.writers.elastodyn_shapes import ELASTODYN_NAMES, POWERS, Polynomial
 from ...core.modes import STATIONS
 from ...core.participation import describe_fractions, gyration, in_blade_axes
 from ..shared.certain import certain

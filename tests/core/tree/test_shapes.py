@@ -13,11 +13,11 @@ from hypothesis import strategies as st
 from matplotlib.text import Text
 
 from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell
-from southwell.cases.campbell.elastodyn_shapes import DIGITS, POWERS, Polynomial, as_it_is, fit, polynomials, principal
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers.openfast import elastodyn
 from southwell.cases.input.readers.source import Mount
+from southwell.cases.writers.elastodyn_shapes import DIGITS, POWERS, Polynomial, as_it_is, fit, polynomials, principal
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.modes import STATIONS
 from southwell.core.solve import mesh_modes

@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from southwell import modes
-from southwell.cases.campbell.elastodyn_shapes import polynomials
 from southwell.cases.input import readers
 from southwell.cases.input.readers import Mount
+from southwell.cases.writers.elastodyn_shapes import polynomials
 from southwell.core.blade import Blade
 
 from ...cases.input.readers.openfast.test_readers_elastodyn import real
