@@ -8,17 +8,21 @@ class Quantity:
     """One quantity.
 
     Attributes:
+        name: in words.
+        plural: of several.
         unit: SI; empty for a plain number.
         scale: what a difference is divided by, in ``unit``; None: the reference.
     """
 
+    name: str
+    plural: str
     unit: str
     scale: float | None
 
 
 QUANTITIES = {
-    "frequency": Quantity("rad/s", None),
-    "damping": Quantity("", 1.0),
+    "frequency": Quantity("frequency", "frequencies", "rad/s", None),
+    "damping": Quantity("damping ratio", "damping ratios", "", 1.0),
 }
 """Names in results → quantities. The difference of two damping ratios is absolute: it is a fraction of critical damping."""
 

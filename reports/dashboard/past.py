@@ -1,7 +1,7 @@
-"""The history as data: frequencies and differences by run, and where they changed.
+"""The history as data: numbers and differences by run, and where they changed.
 
-A difference is ``code/core − 1``, so each cell also gives core's frequency. If core changed, the change is attributed
-to core.
+A cell's number and its difference from core also give core's number. If core changed, the change is attributed to core.
+Changes are relative to the scale of the quantity, as differences are, see ``cases.judge.quantities``.
 """
 
 from collections import defaultdict
@@ -9,8 +9,10 @@ from collections.abc import Sequence
 from math import inf
 from typing import Any
 
+from ...cases.judge.quantities import QUANTITIES, difference, reference
+from ...cases.judge.results import described
 from ...cases.regression.gate import MOVED
-from ...cases.regression.history import Entry, History, Key
+from ...cases.regression.history import Entry, History, Key, Point
 from ...cases.regression.properties import CHECKED
 from ..shared.summary import WORST_FIRST
 from .data import verdicts
@@ -44,76 +46,81 @@ def _run(e: Entry) -> dict[str, Any]:
     }
 
 
-def _by_key(entries: Sequence[Entry]) -> dict[Key, list[Any]]:
-    """The frequencies of every cell by run; other quantities are left to the gate."""
-    series: dict[Key, list[Any]] = defaultdict(lambda: [None] * len(entries))
+def _by_key(entries: Sequence[Entry]) -> dict[Key, list[Point | None]]:
+    """Every cell by run."""
+    series: dict[Key, list[Point | None]] = defaultdict(lambda: [None] * len(entries))
     for k, entry in enumerate(entries):
         for point in entry.cells:
-            if point.quantity == "frequency":
-                series[point.key][k] = point
+            series[point.key][k] = point
     return series
 
 
 def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
-    """Case, code, speed (rad/s), mode, family; frequencies, differences, verdicts, as one value or one per run."""
+    """Case, code, speed (rad/s), mode, family; values, differences and verdicts, as one value or one per run; quantity and
+    point in words, empty for a frequency; whether differences are absolute."""
     out = []
-    for (case, code, omega, mode, *_), points in _by_key(entries).items():
-        there = [p for p in points if p is not None]
+    for (case, code, omega, mode, quantity, where), points in _by_key(entries).items():
         values = [None if p is None else p.value for p in points]
         differences = [None if p is None else p.difference for p in points]
         judged = [None if p is None else WORST_FIRST.index(p.verdict) for p in points]
-        family = there[-1].family
-        out.append([case, code, omega, mode, family, _short(values), _short(differences, 1.0), _short(judged)])
+        family = [p.family for p in points if p is not None][-1]
+        scale = QUANTITIES[quantity].scale
+        row = [case, code, omega, mode, family, _short(values, scale), _short(differences, 1.0), _short(judged)]
+        out.append([*row, described("", quantity, where), scale is not None])
     return out
 
 
 def _short(values: Sequence[float | None], scale: float | None = None) -> Any:
     """One value if all runs agree within rounding, else the list; ``scale``: scale of rounding, if not the value."""
-    one = values[0]
-    if one is None:
+    first = values[0]
+    if first is None:
         return None if all(v is None for v in values) else list(values)
-    near = MOVED * abs(one if scale is None else scale)
-    return one if all(v is not None and abs(v - one) <= near for v in values) else list(values)
+    near = MOVED * abs(first if scale is None else scale)
+    return first if all(v is not None and abs(v - first) <= near for v in values) else list(values)
 
 
 def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
-    """Changes of frequencies: one row per run, case and code (or core)."""
-    found: dict[tuple[int, str, str], dict[tuple[float, int], float | None]] = defaultdict(dict)
-    for (case, code, omega, mode, *_), points in _by_key(entries).items():
+    """Changes of numbers: one row per run, case, code (or core) and quantity."""
+    changes: dict[tuple[int, str, str, str], dict[tuple[float, int, str], float | None]] = defaultdict(dict)
+    for (case, code, omega, mode, quantity, where), points in _by_key(entries).items():
         own = [None if p is None else p.value for p in points]
         core = [
-            None if p is None or p.value is None or p.difference is None else p.value / (1.0 + p.difference)
+            None if p is None or p.value is None or p.difference is None else reference(quantity, p.value, p.difference)
             for p in points
         ]
         for who, values in ((code, own), (CORE, core)):
-            for k in frequency_steps(values):
+            for k in steps(values, quantity):
                 before = next(v for v in reversed(values[:k]) if v is not None)
-                found[k, who, case][omega, mode] = _change(before, values[k])
+                at = omega, mode, described("", quantity, where)
+                changes[k, who, case, quantity][at] = _change(quantity, before, values[k])
     families = {(p.case, p.omega, p.mode): p.family for entry in entries for p in entry.cells}
     out = []
-    for (k, who, case), where in found.items():
-        (omega, mode), change = max(where.items(), key=_size)
-        step = {"run": k, "who": who, "case": case, "count": len(where)}
+    for (k, who, case, quantity), by_cell in changes.items():
+        (omega, mode, what), change = max(by_cell.items(), key=_size)
+        numbers = f"{len(by_cell)} {QUANTITIES[quantity].plural if len(by_cell) > 1 else QUANTITIES[quantity].name}"
+        step = {"run": k, "who": who, "case": case, "count": len(by_cell), "numbers": numbers, "what": what}
         out.append({**step, "change": change, "omega": omega, "mode": mode, "family": families[case, omega, mode]})
     return out
 
 
-def _change(before: float | None, after: float | None) -> float | None:
-    """The relative change; None if there is no earlier value."""
-    return after / before - 1.0 if before and after is not None else None
+def _change(quantity: str, before: float | None, after: float | None) -> float | None:
+    """The change relative to the scale of the quantity; None if there is no earlier value, or it is a frequency of zero."""
+    if before is None or after is None or (not before and QUANTITIES[quantity].scale is None):
+        return None
+    return difference(quantity, after, before)
 
 
 def _size(item: tuple[Any, float | None]) -> float:
     return inf if item[1] is None else abs(item[1])
 
 
-def frequency_steps(values: Sequence[float | None]) -> list[int]:
-    """Positions at which a frequency differs from its previous value; frequencies have no noise."""
-    out, last = [], None
+def steps(values: Sequence[float | None], quantity: str = "frequency") -> list[int]:
+    """Positions at which a number differs from its previous value by more than rounding; results have no noise."""
+    out, last, scale = [], None, QUANTITIES[quantity].scale
     for k, value in enumerate(values):
         if value is None:
             continue
-        if last is not None and abs(value - last) > MOVED * abs(last):
+        if last is not None and abs(value - last) > MOVED * (abs(last) if scale is None else scale):
             out.append(k)
         last = value
     return out

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input import library
-from southwell.cases.judge.results import Run
+from southwell.cases.judge.results import Run, described
 from southwell.cases.regression import history
 from southwell.cases.store import results_file
 from southwell.core.blade import Blade
@@ -20,7 +20,7 @@ from southwell.reports.cli import app as cli
 from southwell.reports.dashboard import moving as shapes
 from southwell.reports.dashboard.data import codes, headline, of_case, page
 from southwell.reports.dashboard.moving import moving
-from southwell.reports.dashboard.past import CORE, frequency_steps, moves, of_history
+from southwell.reports.dashboard.past import CORE, moves, of_history, steps
 from southwell.reports.dashboard.write import SCRIPTS, write
 from southwell.reports.shared.units import RAD_S
 from southwell.reports.site import readme
@@ -203,8 +203,25 @@ def test_a_rotor_without_a_steady_state_has_no_shapes(monkeypatch: pytest.Monkey
     assert shown["speeds"] == []
 
 
-def test_steps_of_frequencies_are_moves_beyond_rounding() -> None:
-    assert frequency_steps([1.0, 1.0 + 1e-12, None, 1.0 + 2e-9, 1.0 + 2e-9]) == [3]
+def test_steps_are_moves_beyond_rounding() -> None:
+    """Of a frequency by a fraction of itself, of a damping ratio by a fraction of critical damping."""
+    assert steps([1.0, 1.0 + 1e-12, None, 1.0 + 2e-9, 1.0 + 2e-9]) == [3]
+    assert steps([1e-3, 1e-3 + 2e-12, 1e-3 + 2e-9]) == [1, 2]
+    assert steps([1e-3, 1e-3 + 2e-12, 1e-3 + 2e-9], "damping") == [2]
+
+
+def test_the_history_has_damping_ratios() -> None:
+    """A code's ratio moves from 0.02 to 0.021, core's stays at 0.0205; the frequency of the same mode does not move."""
+    ratio = samples.cell(quantity="damping", value=0.02, reference=0.0205, difference=-0.0005, full=None)
+    runs = [Run((samples.cell(), c)) for c in (ratio, replace(ratio, value=0.021, difference=0.0005))]
+    past = of_history(history.History(tuple(history.entry(r, f"commit{k}") for k, r in enumerate(runs))))
+    frequency, damping = past["cells"]
+    assert (frequency[5], frequency[8:]) == (samples.cell().value, ["", False])
+    assert damping[5:7] == [[0.02, 0.021], [-0.0005, 0.0005]]
+    assert damping[8:] == ["damping", True]
+    (step,) = past["steps"]
+    assert (step["run"], step["who"], step["numbers"], step["what"]) == (1, "alpha", "1 damping ratio", "damping")
+    assert step["change"] == pytest.approx(0.001)
 
 
 def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
@@ -220,10 +237,11 @@ def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
 
 def test_every_number_is_in_the_history(tmp_path: Path) -> None:
     rows = of_history(history.read(kept(tmp_path / "h.jsonl")))["cells"]
-    assert {(r[0], r[1], r[2], r[3]) for r in rows} == {(c.case, c.code, c.omega, c.mode) for c in run().cells}
-    by_key = {tuple(r[:4]): r for r in rows}
+    by_key = {(*r[:4], r[8]): r for r in rows}
+    assert set(by_key) == {(c.case, c.code, c.omega, c.mode, described("", c.quantity, c.where)) for c in run().cells}
     for c in run().cells:
-        frequencies, verdicts = by_key[c.case, c.code, c.omega, c.mode][5], by_key[c.case, c.code, c.omega, c.mode][7]
+        row = by_key[c.case, c.code, c.omega, c.mode, described("", c.quantity, c.where)]
+        frequencies, verdicts = row[5], row[7]
         if c.code == LOST:
             assert verdicts[6] is None
         elif (c.case, c.code) != ("tip-mass", "scikit-fem"):

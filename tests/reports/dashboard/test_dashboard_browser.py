@@ -352,7 +352,7 @@ def test_the_history(tab: Any, site: Path) -> None:
     assert tab.locator("#cells tbody tr").count() > 10
     tab.select_option("select[name=from]", "0")
     tab.select_option("select[name=to]", "1")
-    assert "No frequency moved" in tab.locator("#moved").inner_text()
+    assert "No number moved" in tab.locator("#moved").inner_text()
 
 
 def test_one_number_run_by_run(tab: Any, site: Path) -> None:
