@@ -16,6 +16,7 @@ from ..solve.published_tables import about, rows
 from ..solve.reference import felt
 from ..solve.refinement import Refining
 from ..solve.works import as_in_source, papers_equations, refined_code, same_code
+from . import deck_columns
 from .column import Column, absent_work, failing_work, not_installed
 
 SAME = 1e-8
@@ -56,7 +57,7 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
     for code in takers:
         head = Head(variant.name, code.name, code.version or "", "code", target, code.shares, code.motions)
         out.append(replace(_code(head, code, blade, limits), origin=_origin(code, blade)))
-    return out
+    return out + deck_columns.columns(variant, codes, limits, target)
 
 
 def _mechanisms_only(case: str, code: Description, target: float) -> Column:

@@ -118,6 +118,27 @@ class Adapter(ABC):
             return None
 
 
+@dataclass(frozen=True)
+class Deck:
+    """The files of a blade, for a code that reads them itself.
+
+    Attributes:
+        format: of the files, as named by Southwell's readers.
+        files: paths; the one that the user names first.
+        digest: of their contents, which determines the answers.
+        length: of the blade, m, if the user states it; None: as in the files.
+        hub_radius: m; None: as in the files, else 0.
+        multipliers: of mass, flapwise and edgewise stiffness of an ElastoDyn table, in place of the file's.
+    """
+
+    format: str
+    files: tuple[str, ...]
+    digest: str
+    length: float | None = None
+    hub_radius: float | None = None
+    multipliers: tuple[float, float, float] | None = None
+
+
 class BladeAdapter(Adapter):
     """A source of a blade's modes.
 
@@ -163,6 +184,10 @@ class BladeAdapter(Adapter):
         if reason := self.unsupported(blade):
             raise CodeError(f"{blade.name}: {reason}")
         return self.modes(blade, omega, elements, count)
+
+    def given(self, deck: Deck) -> "BladeAdapter":
+        """The adapter that solves the blade of a deck, which the code reads itself, in place of a described one."""
+        raise CodeError("this code reads no files")
 
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint | None:
         """Mass and inertia of the model that the code assembles of a supported blade; None if they cannot be obtained.

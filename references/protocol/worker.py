@@ -2,7 +2,7 @@
 
 The process reads one request, with a blade, a turbine or mechanisms ::
 
-    {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …]}
+    {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …], "deck": {…}}
     {"code": "module:attribute", "folder": …, "blade": {…}, "fingerprints": [elements, …]}
     {"code": "module:attribute", "folder": …, "turbine": {…}, "runs": [[omega, elements, count], …]}
     {"code": "module:attribute", "folder": …, "mechanisms": [{…}, …], "guess": {…}}
@@ -15,7 +15,7 @@ limit, finished answers are kept.
 import json
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
-from dataclasses import replace
+from dataclasses import asdict, replace
 from functools import partial
 from math import nan
 from typing import TYPE_CHECKING, Any, TypeVar
@@ -26,7 +26,7 @@ from ...core.modes import STATIONS, Modes
 from . import boundary, registry, sources, store
 from .boundary import NonsenseError
 from .fingerprint import Fingerprint
-from .interface import CodeError, MechanismModes
+from .interface import CodeError, Deck, MechanismModes
 from .process import Failure, Limits, converse, one_line
 from .turbines import TurbineModes
 from .wire import (
@@ -60,7 +60,9 @@ FingerprintAnswer = Fingerprint | Failure | None
 """None: the code reports none."""
 
 
-def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, version: str = "") -> list[Answer]:
+def answers(
+    name: str, blade: Blade, runs: Sequence[Run], limits: Limits, version: str = "", deck: Deck | None = None
+) -> list[Answer]:
     """A code's modes for each run, or a failure, in the order of ``runs``.
 
     Args:
@@ -69,11 +71,12 @@ def answers(name: str, blade: Blade, runs: Sequence[Run], limits: Limits, versio
         runs: solved in this order; put the most important first.
         limits: for each run.
         version: of the code, as described; without it no answer is taken from the store.
+        deck: files of the blade that the code reads itself; None: it solves ``blade``.
 
     Raises:
         UnknownCodeError: if the name is unknown.
     """
-    fixed = {**registry.address(name), "blade": encode(blade)}
+    fixed = {**registry.address(name), "blade": encode(blade), **({"deck": asdict(deck)} if deck else {})}
 
     def request(numbers: Sequence[int]) -> bytes:
         return json.dumps({**fixed, "runs": [list(runs[k]) for k in numbers]}).encode()
@@ -241,14 +244,20 @@ def _answer(request: Any) -> Iterator[Reply]:
     elif "fingerprints" in request:
         yield from _fingerprint_replies(code, decode_blade(request["blade"]), request["fingerprints"])
     elif "blade" in request:
-        yield from _blade_replies(code, decode_blade(request["blade"]), request["runs"])
+        yield from _blade_replies(code, decode_blade(request["blade"]), request["runs"], request.get("deck"))
     elif "turbine" in request:
         yield from _turbine_replies(code, decode_turbine(request["turbine"]), request["runs"])
     else:
         yield from _mechanism_replies(code, map(decode_mechanism, request["mechanisms"]), request["guess"])
 
 
-def _blade_replies(code: Any, blade: Blade, runs: Sequence[Run]) -> Iterator[Reply]:
+def _blade_replies(code: Any, blade: Blade, runs: Sequence[Run], deck: Mapping[str, Any] | None) -> Iterator[Reply]:
+    if deck:
+        try:
+            code = code.given(Deck(**deck))
+        except BaseException as error:
+            yield from [foreign_exception(error, "given()")] * len(runs)
+            return
     if refusal := _declined(code, "unsupported", blade):
         yield from [refusal] * len(runs)
         return

@@ -48,7 +48,7 @@ FREEDOMS = 9
 """Freedoms of an element, those it shares counted once."""
 
 ITERATED = 500
-"""Number of freedoms above which pyBModes computes eigenvalues iteratively, from a random vector (see ``_reproducible``)."""
+"""Number of freedoms above which pyBModes computes eigenvalues iteratively, from a random vector (see ``reproducible``)."""
 
 NEAR = 1e-3
 """Relative difference between frequencies of a coarse mesh below which iteration may miss one of the two modes."""
@@ -110,9 +110,11 @@ class PyBModes(BladeAdapter):
             CodeError: a stiffness that is not positive at this speed.
         """
         s = element_ends(blade, elements, SECTIONS)
-        with _rotor(blade, omega, s, count) as rotor, _reproducible():
+        with _rotor(blade, omega, s, count) as rotor, reproducible():
             doubted = FREEDOMS * (len(s) - 1) > ITERATED and _doubled(blade, omega, count)
-            frequencies, shapes = _moving(rotor, blade, count, doubted, _most(blade, len(s) - 1))
+            frequencies, shapes = moving(
+                rotor, (blade.hub_radius + blade.length, blade.length), count, doubted, _most(blade, len(s) - 1)
+            )
         return Modes(omega, frequencies, shapes, len(s) - 1)
 
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
@@ -135,7 +137,7 @@ def _rotor(blade: Blade, omega: float, s: Array, count: int) -> Iterator[Any]:
 
 
 @contextmanager
-def _reproducible() -> Iterator[None]:
+def reproducible() -> Iterator[None]:
     """Let pyBModes' iteration begin at the same vectors in every call, another one each time that it begins."""
     from scipy.sparse import linalg
 
@@ -189,8 +191,17 @@ def _most(blade: Blade, elements: int) -> int:
     return FREEDOMS * elements if polar else FREEDOMS * elements // 2
 
 
-def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> tuple[Array, NDArray[np.complex128]]:
+def moving(
+    rotor: Any, size: tuple[float, float], count: int, doubted: bool, most: int
+) -> tuple[Array, NDArray[np.complex128]]:
     """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes with lateral motion or twist.
+
+    Args:
+        rotor: pyBModes's model.
+        size: radius of the tip and length of the blade, m.
+        count: number of modes.
+        doubted: whether two modes may have nearly the same frequency.
+        most: the largest number of modes that pyBModes can compute.
 
     With more than ``ITERATED`` freedoms, pyBModes iterates from one vector, and at times misses one of two modes with
     the same frequency. Where there may be such modes (``doubted``), more modes are requested until two answers agree.
@@ -205,26 +216,25 @@ def _moving(rotor: Any, blade: Blade, count: int, doubted: bool, most: int) -> t
         if not (spectrum.frequencies > 0).all():
             raise CodeError("stiffness: not positive definite: no stable steady state at this rotor speed; lower it")
         pairs = zip(spectrum.frequencies, spectrum.shapes, strict=True)
-        moving = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
-        frequencies = 2 * np.pi * np.array([f for f, _ in moving])
+        lateral = [(f, shape) for f, shape in pairs if _moves(shape)][:count]
+        frequencies = 2 * np.pi * np.array([f for f, _ in lateral])
         confirmed = not doubted or (
             len(last_frequencies) == len(frequencies)
             and np.allclose(last_frequencies, frequencies, rtol=AGREEMENT, atol=0.0)
         )
-        if (len(moving) == count and confirmed) or asked == most:
+        if (len(lateral) == count and confirmed) or asked == most:
             break
         last_frequencies, asked = frequencies, min(2 * asked, most)
-    return frequencies, _at_stations([shape for _, shape in moving], blade)
+    return frequencies, _at_stations([shape for _, shape in lateral], *size)
 
 
 def _moves(shape: Any) -> bool:
     return max(np.abs(part).max() for part in (shape.lag_disp, shape.flap_disp, shape.twist)) > ZERO_SHAPE
 
 
-def _at_stations(shapes: Sequence[Any], blade: Blade) -> NDArray[np.complex128]:
+def _at_stations(shapes: Sequence[Any], radius: float, length: float) -> NDArray[np.complex128]:
     """(m, 21, 4) at the common stations, by the element's cubics in bending; pyBModes's displacements are in tip radii."""
-    radius = blade.hub_radius + blade.length
-    s, at = shapes[0].span_loc * blade.length, STATIONS * blade.length
+    s, at = shapes[0].span_loc * length, STATIONS * length
     out = np.zeros((len(shapes), len(at), 4), complex)
     for axis, name in ((1, "lag"), (2, "flap")):
         moved, slope = (np.array([getattr(shape, f"{name}_{what}") for shape in shapes]) for what in ("disp", "slope"))

@@ -19,11 +19,15 @@ def element_ends(blade: Blade, elements: int, most: int) -> Array:
     divided evenly between the elements, so that the curvature (moment over stiffness) is resolved.
     """
     ends = intervals(blade)
-    pieces = -(-elements // min(len(ends) - 1, most))
     at = sample(blade, ends)
-    change = np.diff(np.log([at.EI_y, at.EI_z]))
+    return graded(ends, np.array([at.EI_y, at.EI_z]), -(-elements // min(len(ends) - 1, most)))
+
+
+def graded(ends: Array, bending: Array, pieces: int) -> Array:
+    """Ends of ``pieces`` elements in each interval between ``ends`` (k+1,) with the bending stiffness ``bending`` (2, k+1)."""
+    change = np.diff(np.log(bending))
     change = np.take_along_axis(change, np.abs(change).argmax(0)[None], 0).T
     equal = np.arange(pieces) / pieces
-    graded = np.abs(change) > 1e-6
-    share = np.where(graded, np.expm1(equal * change) / np.expm1(np.where(graded, change, 1.0)), equal)
+    uneven = np.abs(change) > 1e-6
+    share = np.where(uneven, np.expm1(equal * change) / np.expm1(np.where(uneven, change, 1.0)), equal)
     return np.append((ends[:-1, None] + np.diff(ends)[:, None] * share).ravel(), ends[-1])

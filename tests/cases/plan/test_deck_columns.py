@@ -1,0 +1,77 @@
+"""A code that reads the deck itself contradicts a mistake in Southwell's reader, which all other codes follow."""
+
+from pathlib import Path
+
+import pytest
+
+from southwell.cases.input.readers import Mount
+from southwell.cases.input.readers.openfast import elastodyn
+from southwell.cases.judge.results import Cell
+from southwell.cases.plan.column import Column
+from southwell.cases.plan.request import Request
+from southwell.cases.plan.subject import Subject
+from southwell.cases.plan.subjects import subjects
+from southwell.references.protocol.description import describe
+from southwell.references.protocol.process import Limits
+
+from ...support import decks
+
+pytest.importorskip("pybmodes")
+
+SAMPLE = decks.BLADES / "elastodyn_blade.dat"
+MOUNT = Mount(length=48.0, hub_radius=1.0)
+
+
+def subject(path: Path, mount: Mount, rpm: str = "12") -> Subject:
+    (made,) = subjects(Request((str(path),), rpm=rpm, mount=mount), lambda _: None)
+    return made
+
+
+def deck_columns(made: Subject, code: str = "pybmodes") -> list[Column]:
+    assert made.blade is not None
+    found = made.columns(describe([code], [made.blade]), Limits(), ())
+    return [column for column in found if column.code == "pybmodes-deck"]
+
+
+def cells(made: Subject) -> list[Cell]:
+    (column,) = deck_columns(made)
+    references = made.references([column])()
+    return column(made.points, references[column.effects])[0]
+
+
+def test_a_right_reader_is_confirmed_from_end_to_end() -> None:
+    found = cells(subject(SAMPLE, MOUNT))
+    assert {(c.verdict, c.shares) for c in found} == {("pass", "nothing")}
+    assert max(abs(c.difference or 1.0) for c in found) < 5e-5
+
+
+def test_exchanged_stiffnesses_fail_the_code_that_reads_the_deck_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    right = elastodyn.section_stiffness
+
+    def exchanged(EA: float, GJ: float, EI_y: float, EI_z: float) -> object:
+        return right(EA, GJ, EI_z, EI_y)
+
+    monkeypatch.setattr(elastodyn, "section_stiffness", exchanged)
+    assert "fail" in {c.verdict for c in cells(subject(SAMPLE, MOUNT))}
+
+
+@pytest.mark.slow
+def test_precone_which_pybmodes_ignores_is_in_the_uncertainty() -> None:
+    flat = cells(subject(SAMPLE, MOUNT))[0]
+    coned = cells(subject(SAMPLE, Mount(length=48.0, hub_radius=1.0, precone=-0.0436)))[0]
+    assert coned.verdict == "pass"
+    assert "without precone" in coned.reason
+    assert (coned.uncertainty or 0.0) - (flat.uncertainty or 0.0) == pytest.approx(4.3e-5, rel=0.1)
+
+
+def test_formats_that_pybmodes_does_not_read_have_no_column(tmp_path: Path) -> None:
+    assert not deck_columns(subject(decks.csv(tmp_path), Mount(length=20.0, hub_radius=1.0)))
+
+
+def test_without_pybmodes_among_the_codes_there_is_no_column() -> None:
+    assert not deck_columns(subject(SAMPLE, MOUNT), "exact-beam")
+
+
+def test_a_blade_that_its_beam_does_not_support_has_the_reason() -> None:
+    (column,) = deck_columns(subject(SAMPLE, Mount(length=48.0, hub_radius=1.0, pitch=0.1)))
+    assert not column.solves
