@@ -240,7 +240,7 @@ def test_it_leaves_no_files_and_is_repeatable(monkeypatch: pytest.MonkeyPatch, t
 def test_a_mode_that_the_iteration_misses_is_found(doubted: bool, monkeypatch: pytest.MonkeyPatch) -> None:
     """The first answer lacks one of a double pair."""
     monkeypatch.setattr(pybmodes_beam, "_moves", lambda _: True)
-    monkeypatch.setattr(pybmodes_beam, "_at_stations", lambda shapes, _: np.array(shapes))
+    monkeypatch.setattr(pybmodes_beam, "_at_stations", lambda shapes, *_: np.array(shapes))
     all_, asked = np.array([1.0, 2.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]), []
 
     def run(count: int, **_: bool) -> SimpleNamespace:
@@ -249,7 +249,7 @@ def test_a_mode_that_the_iteration_misses_is_found(doubted: bool, monkeypatch: p
         return SimpleNamespace(frequencies=found * (1.0 + 1e-8 * len(asked)), shapes=list(range(len(found))))
 
     rotor = SimpleNamespace(run=run)
-    frequencies, shapes = pybmodes_beam._moving(rotor, WINDPACT, count=3, doubted=doubted, most=10)
+    frequencies, shapes = pybmodes_beam.moving(rotor, (1.0, 1.0), count=3, doubted=doubted, most=10)
     assert asked == ([5, 10] if doubted else [5])
     expected = [1.0, 2.0, 2.0] if doubted else [1.0, 2.0, 3.0]
     np.testing.assert_allclose(frequencies, 2 * np.pi * np.array(expected), rtol=1e-6)
