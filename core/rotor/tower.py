@@ -129,12 +129,34 @@ def ordinal(number: int) -> str:
     return f"{number}{suffix}"
 
 
+def check(length: float, support: Support) -> None:
+    """Check a support of a tower of this length, m.
+
+    Raises:
+        ValueError: a stiffness is not symmetric or not positive, or a spring is not on the tower.
+    """
+    if support.base is not None:
+        checked("base", support.base, True)
+    heights = np.array([height for height, _ in support.springs])
+    for _, stiffness in support.springs:
+        checked("spring", stiffness, False)
+    soil = np.zeros((0, 2)) if support.soil is None else support.soil
+    for what, given in (("springs", heights), ("soil", soil[:, 0])):
+        if len(given) and not (-SAME * length <= given.min() <= given.max() <= (1 + SAME) * length):
+            raise ValueError(
+                f"{what}: heights from {given.min():g} to {given.max():g} m: the tower is {length:g} m high"
+            )
+    if len(soil) and (len(soil) < 2 or (np.diff(soil[:, 0]) <= 0).any() or (soil[:, 1] < 0).any()):
+        raise ValueError("soil: give two heights or more that ascend, and no negative stiffness")
+
+
 def tower_mesh(beam: Blade, support: Support, elements: int, at: Array | None = None) -> Mesh:
     """The tower's elements on the joints of its base; ``at`` are the heights of its sample points, see ``discretize``.
 
     Raises:
         ValueError: a stiffness is not symmetric or not positive, or a spring is not on the tower.
     """
+    check(beam.length, support)
     mesh = discretize(beam, _ends(beam, support, elements), at=at)
     if support.base is None:
         return mesh
@@ -180,14 +202,6 @@ def _ends(beam: Blade, support: Support, elements: int) -> Array:
     """(n + 1,) heights of the nodes."""
     length = beam.length
     heights = np.array([height for height, _ in support.springs])
-    soil = np.zeros((0, 2)) if support.soil is None else support.soil
-    for what, given in (("springs", heights), ("soil", soil[:, 0])):
-        if len(given) and not (-SAME * length <= given.min() <= given.max() <= (1 + SAME) * length):
-            raise ValueError(
-                f"{what}: heights from {given.min():g} to {given.max():g} m: the tower is {length:g} m high"
-            )
-    if len(soil) and ((np.diff(soil[:, 0]) <= 0).any() or (soil[:, 1] < 0).any()):
-        raise ValueError("soil: heights must ascend, and stiffness must not be negative")
     ends = np.sort(np.concatenate([divide(beam, elements), heights]))
     return ends[np.append(True, np.diff(ends) > SAME * length)]
 

@@ -59,7 +59,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     main = load(path)
     named = keys(main)
     if "beam_type" in named and whole(main, named, "beam_type") != 1:
-        raise CaseError(f"{main.at(named['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade")
+        raise CaseError(
+            f"{main.at(named['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade, or use `southwell modes`"
+        )
     text = load(path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
     own = keys(text)
     count = whole(text, own, "n_secs")

@@ -9,7 +9,7 @@ import numpy as np
 from ....cases.campbell.machine import MachineRequest, machine_diagram
 from ....cases.input import files
 from ....cases.input.errors import CaseError
-from ....cases.input.readers.openfast import turbine as reader
+from ....cases.input.machines import turbines as reader
 from ....cases.input.readers.source import Mount
 from ....cases.input.writing import writable
 from ...campbell import interactive, moving_machine, tables
@@ -45,7 +45,7 @@ def run(
     """Compute, print and write the diagram; return whether the required margins are kept.
 
     Args:
-        name: the primary file.
+        name: the primary file, or a TOML file.
         given: speeds (rad/s) and their unit; by default from rest to ``BEYOND`` times the deck's rotor speed.
         request: the settings; its speeds are ignored.
         mount: overrides of the blade's mounting.
@@ -56,8 +56,7 @@ def run(
         CaseError: the deck cannot be read, or a speed has no steady state.
     """
     path = Path(name)
-    with files.reading(path, deck=True):
-        read = reader.read(path, mount)
+    read = reader.read(path, mount)
     if given is None:
         if read.speed <= 0:
             raise CaseError(f"--rpm: missing: {name} has no rotor speed: give speeds, as in 0:15:0.5")
@@ -67,8 +66,9 @@ def run(
     settings = MachineRequest(speeds, request.modes, request.per_rev, request.operating, request.margin)
     diagram = machine_diagram(read.turbine, settings, at=units.at)
     shown = ", ".join(file.name for file in read.source.files)
+    ground = "on rigid ground" if read.turbine.support.rigid else "on springs"
     about = (
-        f"{path.name}: the whole turbine on rigid ground: tower, nacelle, drivetrain, hub and {read.turbine.blades} blades",
+        f"{path.name}: the whole turbine {ground}: tower, nacelle, drivetrain, hub and {read.turbine.blades} blades",
         f"{read.source.format}: {shown}",
         f"axes: {read.source.axes}",
         *read.source.notes,

@@ -25,7 +25,7 @@ from ..arguments import Accuracy, Changes, Elements, NumberOfModes, given_speeds
 from ..errors import UsageError
 from ..mounting import Mounting
 from . import mechanism_text as answer
-from . import subjects
+from . import subjects, tower
 
 
 def modes(
@@ -51,7 +51,7 @@ def modes(
     ----------
     case
         Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`), one
-        of its blades as `case/blade`, or its TOML file.
+        of its blades as `case/blade`, or its TOML file; or the file of a tower (ElastoDyn, BModes, Southwell's TOML).
     omega
         Rotor speeds in rad/s: one, a range `first:last:step` or a list `0,5,10`. Default: the speeds of the file or case.
     rpm
@@ -73,6 +73,19 @@ def modes(
     against
         Another blade; prints the change of every frequency.
     """
+    if tower.is_tower(case):
+        tower.run(
+            case,
+            modes,
+            json,
+            omega=omega is not None,
+            rpm=rpm is not None,
+            elements=elements is not None,
+            changes=bool(changes),
+            against=against is not None,
+            mounting=mounting is not None and mounting != Mounting(),
+        )
+        return PASSED
     speeds, units = given_speeds(omega, rpm)
     rows: list[dict[str, object]] = []
     mount, given = (mounting or Mounting()).mount(), [parse(text) for text in changes]

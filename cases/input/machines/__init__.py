@@ -1,0 +1,1 @@
+"""Files of towers and whole turbines, of any format."""

@@ -1,0 +1,225 @@
+"""A turbine or a tower in Southwell's TOML format, see ``schema``."""
+
+from pathlib import Path
+from typing import Literal
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ....core.rotor.tower import Support, Tower, check
+from ....core.rotor.turbine import Drivetrain, Turbine, shaft_pose
+from ....core.space import spatial as sp
+from ....core.space.inertia import transformed
+from .. import readers, toml
+from ..errors import CaseError
+from ..readers.matrices import BEAMDYN, in_axes
+from ..readers.openfast import elastodyn_tower
+from ..readers.source import Mount, Source
+from ..readers.text import load
+from .schema import HubData, MachineData, NacelleData, RotorData, Three, TowerData
+
+Array = NDArray[np.float64]
+
+NAME = "Southwell turbine"
+AXES = "x downwind, y to port, z up; here x = its z, y = its −y, z = its x"
+
+GROUND = "rigid ground: platform and water are not included"
+
+DIRECTIONS = ("downwind", "port", "up", "roll", "pitch", "yaw")
+
+ROTOR = ("rotor", "nacelle", "hub")
+"""Tables that only a turbine has."""
+
+
+def holds(path: Path) -> Literal["turbine", "tower"] | None:
+    """What a TOML file describes; None if it has no tower, as a blade's or a mechanism's file.
+
+    Raises:
+        CaseError: it is not TOML.
+    """
+    found = toml.document(path)
+    if not isinstance(found.get("tower"), dict):
+        return None
+    return "turbine" if any(name in found for name in ROTOR) else "tower"
+
+
+def _data(path: Path) -> MachineData:
+    found = toml.document(path)
+    toml.finite(found, str(path))
+    return toml.convert(found, MachineData, str(path))
+
+
+def tower(path: Path) -> tuple[Tower, Source]:
+    """Read a tower without a rotor.
+
+    Raises:
+        CaseError: naming the file and field at fault.
+    """
+    data = _data(path)
+    beam, files = _beam(path, data.name or path.stem, data.tower)
+    support = _support(path, data.tower)
+    weight = f"gravity {data.gravity:g} m/s²" if data.gravity else "without weight"
+    notes = (*((GROUND,) if support.rigid else ("on the springs of tower.support",)), weight)
+    return Tower(beam, support, data.gravity), Source("Southwell tower", (path, *files), AXES, notes)
+
+
+def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
+    """Read a turbine, its source, and its rotor speed in rad/s; ``mount`` overrides the data of the blades.
+
+    Raises:
+        CaseError: naming the file and field at fault.
+    """
+    data = _data(path)
+    missing = [name for name in ROTOR if getattr(data, name) is None]
+    if missing:
+        raise CaseError(f"{path}: {missing[0]}: missing: a turbine has the tables tower, {', '.join(ROTOR)}; add it")
+    assert data.rotor is not None
+    assert data.nacelle is not None
+    assert data.hub is not None
+    if data.rotor.blades < 3:
+        raise CaseError(f"{path}: rotor.blades: {data.rotor.blades}: give 3 or more; describe fewer as a mechanism")
+    blade = _blade(path, data.rotor, mount)
+    name = data.name or path.stem
+    beam, files = _beam(path, f"{name}'s tower", data.tower)
+    drive = data.drivetrain
+    support = _support(path, data.tower)
+    made = Turbine(
+        name=name,
+        tower=beam,
+        blade=blade.mounted(path),
+        blades=data.rotor.blades,
+        nacelle=_body(data.nacelle.mass, data.nacelle.moments, data.nacelle.centre),
+        hub=_hub(data.hub),
+        shaft=_shaft(data.nacelle),
+        yaw=data.nacelle.yaw_stiffness or np.inf,
+        drivetrain=Drivetrain(
+            drive.stiffness or np.inf, drive.generator_inertia, drive.gear_ratio, drive.generator == "free"
+        ),
+        gravity=data.gravity,
+        support=support,
+    )
+    notes = (
+        GROUND if support.rigid else "tower on the springs of tower.support; platform and water are not included",
+        f"gravity {data.gravity:g} m/s² acts on the tower through all that it carries, not on the blades' own motions",
+        f"generator {drive.generator}; shaft {f'{drive.stiffness:g} N m/rad' if drive.stiffness else 'rigid'}",
+        f"yaw bearing {f'{data.nacelle.yaw_stiffness:g} N m/rad' if data.nacelle.yaw_stiffness else 'locked'}",
+        *blade.source.notes,
+    )
+    source = Source(NAME, (path, *files, *blade.source.files), AXES, notes, blade.source.unused)
+    return made, source, data.rotor_speed * np.pi / 30.0
+
+
+def _blade(path: Path, data: RotorData, mount: Mount) -> readers.Reading:
+    """The blade; ``mount`` overrides the file's table ``rotor``, which overrides the blade's file."""
+
+    def radians(option: float | None, degrees: float | None) -> float | None:
+        return option if option is not None or degrees is None else float(np.radians(degrees))
+
+    both = Mount(
+        main=mount.main,
+        length=mount.length if mount.length is not None else data.length,
+        hub_radius=mount.hub_radius if mount.hub_radius is not None else data.hub_radius,
+        precone=radians(mount.precone, data.precone),
+        pitch=radians(mount.pitch, data.pitch),
+        subset=mount.subset,
+        multipliers=mount.multipliers,
+        offsets=mount.offsets,
+    )
+    return readers.reading(path.parent / data.blade, both)
+
+
+def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ...]]:
+    """The tower as a beam that stands, and the file read."""
+    lists = {
+        key: getattr(data, key)
+        for key in ("stations", "mass", "EI_fore_aft", "EI_side_side", "GJ", "EA")
+        if getattr(data, key)
+    }
+    top = np.zeros((6, 6)) if data.top is None else _body(data.top.mass, data.top.moments, data.top.centre)
+    if data.file is not None:
+        if lists:
+            raise CaseError(f"{path}: tower.{next(iter(lists))}: with tower.file, which contains it: leave one out")
+        file = path.parent / data.file
+        beam, _ = elastodyn_tower.beam(load(file), data.height)
+        return Blade(name, beam.stations, beam.stiffness, beam.mass, beam.twist, tip_mass=top), (file,)
+    for key in ("stations", "mass", "EI_fore_aft"):
+        if key not in lists:
+            raise CaseError(f"{path}: tower.{key}: missing: give it at every station, or tower.file")
+    count = len(data.stations)
+    for key, values in lists.items():
+        if len(values) != count:
+            raise CaseError(f"{path}: tower.{key}: {len(values)} values for {count} stations: give one per station")
+        if key != "stations" and min(values) <= 0:
+            raise CaseError(f"{path}: tower.{key}: {min(values):g}: it must be positive")
+    if data.stations[0] != 0 or abs(data.stations[-1] / data.height - 1.0) > 1e-9:
+        raise CaseError(
+            f"{path}: tower.stations: from {data.stations[0]:g} to {data.stations[-1]:g} m: begin at 0 and end at the height, "
+            f"{data.height:g} m"
+        )
+
+    def column(key: str, otherwise: object) -> Array:
+        return np.array(lists.get(key, otherwise), float)
+
+    rigid = np.full(count, np.inf)
+    try:
+        beam = Blade(
+            name=name,
+            stations=np.array(data.stations),
+            stiffness=section_stiffness(
+                column("EA", rigid),
+                column("GJ", rigid),
+                column("EI_fore_aft", 0),
+                column("EI_side_side", data.EI_fore_aft),
+            ),
+            mass=section_mass(column("mass", 0)),
+            twist=np.zeros(count),
+            tip_mass=top,
+        )
+    except BladeError as error:
+        raise CaseError(f"{path}: tower: {error}") from error
+    return beam, ()
+
+
+def _support(path: Path, data: TowerData) -> Support:
+    given = data.support
+    base = None
+    if given.stiffness is not None:
+        K = np.array([row for row in given.stiffness if len(row) == 6])
+        if K.shape != (6, 6) or len(given.stiffness) != 6:
+            raise CaseError(f"{path}: tower.support.stiffness: give 6 rows of 6 numbers")
+        base = in_axes(K, BEAMDYN)
+        clamped = [DIRECTIONS.index(name) for name in given.clamped]
+        for k, name in zip(clamped, given.clamped, strict=True):
+            if K[k].any() or K[:, k].any():
+                raise CaseError(
+                    f"{path}: tower.support.clamped: {name}: its row of the stiffness is not zero; correct one"
+                )
+        turned = np.flatnonzero(np.diagonal(in_axes(np.diag(np.isin(range(6), clamped).astype(float)), BEAMDYN)))
+        base[turned, turned] = np.inf
+    elif given.clamped:
+        raise CaseError(f"{path}: tower.support.clamped: without a stiffness all directions are clamped: leave it out")
+    springs = tuple((s.height, np.diag([0.0, s.port, s.downwind, 0.0, 0.0, 0.0])) for s in given.springs)
+    support = Support(base, springs, np.array(given.soil) if given.soil else None)
+    try:
+        check(data.height, support)
+    except ValueError as error:
+        raise CaseError(f"{path}: tower.support: {error}") from error
+    return support
+
+
+def _body(mass: float, moments: Three, centre: Three) -> Array:
+    """(6, 6) inertia in the tower's axes."""
+    x, y, z = centre
+    about = np.diag([mass] * 3 + [moments[2], moments[1], moments[0]])
+    return np.ascontiguousarray(transformed(about, sp.pose(np.eye(3), np.array([z, -y, x]))))
+
+
+def _hub(data: HubData) -> Array:
+    across = data.transverse_inertia
+    about = np.diag([data.mass] * 3 + [across, across, data.inertia])
+    return np.ascontiguousarray(transformed(about, sp.pose(np.eye(3), np.array([0.0, 0.0, data.centre]))))
+
+
+def _shaft(data: NacelleData) -> Array:
+    return shaft_pose(data.shaft_height, data.overhang, float(np.radians(data.tilt)))

@@ -1,0 +1,181 @@
+"""BModes main files (.bmi) of a tower: its sections, top mass, guy wires, and the springs of its base.
+
+BModes' axes are x downwind, y to port, z up; here x = its z, y = its −y, z = its x. As in BModes, a tower is straight, equally
+stiff in both directions (``flp_stff``, ``flp_iner``), without offsets and without weight. ``cm_loc`` is the top mass's distance
+downwind, ``cm_axial`` that above the top; its moments are about axes through the top. Wires of stiffness k at the angle θ from
+the ground, n at a node, act like n/2 k cos²θ in every horizontal direction. Source: G. Bir, *User's Guide to BModes*,
+NREL/TP-500-39133, 2005.
+"""
+
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ....core.rotor.tower import Support, Tower, check
+from ....core.space import spatial as sp
+from ....core.space.inertia import transformed
+from ..errors import CaseError
+from . import bmodes
+from .bmodes import COLUMNS, FACTORS, Named
+from .matrices import BEAMDYN, in_axes
+from .source import Source, Unused, unused
+from .text import Text, fractions, keys, leading, load, table, value, whole, word
+
+Array = NDArray[np.float64]
+
+NAME = "BModes tower"
+AXES = "BModes: x downwind, y to port, z up; here x = its z, y = its −y, z = its x"
+
+CLAMPED, FREE, LATERAL = 1, 2, 3
+"""hub_conn: clamped; free in all directions; only axial motion and torsion are clamped."""
+
+LATERAL_FREE = (1, 2, 4, 5)
+"""Directions of our axes that hub_conn = 3 leaves to the springs of the base."""
+
+
+def matches_format(text: Text) -> bool:
+    """Whether these are lines of a main file of a tower."""
+    named = keys(text)
+    return bmodes.matches_format(text) and "beam_type" in named and named["beam_type"][1] == "2"
+
+
+def read(path: Path) -> tuple[Tower, Source]:
+    """Read a tower.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    main = load(path)
+    named = keys(main)
+    sections = load(path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
+    own = keys(sections)
+    count = whole(sections, own, "n_secs")
+    start = own["n_secs"][0] + 1
+    while start < len(sections.lines) and not leading(sections.lines[start]):
+        start += 1
+    found = table(sections, start, count, COLUMNS)
+    found.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
+    found.positive("flp_iner", zero=True)
+    by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
+    p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
+    draft = value(main, named, "draft") if "draft" in named else 0.0
+    height = value(main, named, "radius") + draft - value(main, named, "hub_rad")
+    if height <= 0:
+        raise CaseError(
+            f"{main.at(named['radius'][0])}: radius: the top is not above the base; correct radius, hub_rad, draft"
+        )
+    try:
+        beam = Blade(
+            name=path.stem,
+            stations=fractions(found, "sec_loc") * height,
+            stiffness=section_stiffness(p["axial_stff"], p["tor_stff"], p["flp_stff"], p["flp_stff"]),
+            mass=section_mass(p["mass_den"], p["flp_iner"], p["flp_iner"]),
+            twist=np.zeros(count),
+            tip_mass=_top(main, named),
+        )
+    except BladeError as error:
+        raise CaseError(f"{sections.path}: {error}") from error
+    base, base_note = _base(main, named, draft)
+    wires = _wires(main, named, height)
+    notes = [
+        base_note,
+        "without weight, as in BModes",
+        "side-side stiffness and inertia are those of fore-aft, as in BModes",
+        "properties vary linearly between sections; BModes uses their values in the middle of its elements",
+    ]
+    if wires:
+        heights = ", ".join(f"{h:g} m" for h, _ in wires)
+        notes.append(f"guy wires at {heights}: their horizontal stiffness")
+    support = Support(base, wires, _soil(main, named, height))
+    try:
+        check(height, support)
+    except ValueError as error:
+        raise CaseError(f"{path}: {error}") from error
+    return Tower(beam, support), Source(NAME, (path, sections.path), AXES, tuple(notes), _unused(main, named))
+
+
+def _top(main: Text, named: Named) -> Array:
+    """(6, 6) inertia at the tower's top."""
+    names = ("tip_mass", "cm_loc", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
+    m, x, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
+    z = value(main, named, "cm_axial") if "cm_axial" in named else 0.0
+    cross = m * sp.skew(np.array([x, 0.0, z]))
+    tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
+    return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
+
+
+def _base(main: Text, named: Named, draft: float) -> tuple[Array | None, str]:
+    """Stiffness of the base, and a note on it."""
+    kind, at = whole(main, named, "hub_conn"), main.at(named["hub_conn"][0])
+    if kind == CLAMPED:
+        return None, "clamped at the base (hub_conn = 1)"
+    if kind != LATERAL:
+        raise CaseError(
+            f"{at}: hub_conn: {kind}: a tower here stands on the ground; give 1 (clamped) or 3 (on springs)"
+        )
+    below = value(main, named, "ref_msl") - draft if "ref_msl" in named else 0.0
+    K = _matrix(main, "hydro_K") + _matrix(main, "mooring_K")
+    raised = transformed(in_axes(K, BEAMDYN), sp.pose(np.eye(3), np.array([-below, 0.0, 0.0])))
+    base = np.diag([np.inf] * 6)
+    base[np.ix_(LATERAL_FREE, LATERAL_FREE)] = raised[np.ix_(LATERAL_FREE, LATERAL_FREE)]
+    return base, "base on springs (hydro_K + mooring_K), clamped axially and in torsion (hub_conn = 3)"
+
+
+def _matrix(main: Text, name: str) -> Array:
+    """The 6 rows of 6 numbers below the line that ends in a name."""
+    head = next((k for k, line in enumerate(main.lines) if f"({name})" in line), None)
+    if head is None:
+        return np.zeros((6, 6))
+    rows = [leading(line)[:6] for line in main.lines[head + 1 : head + 7]]
+    if len(rows) < 6 or any(len(row) < 6 for row in rows) or not np.isfinite(rows).all():
+        raise CaseError(f"{main.at(head)}: {name}: give 6 rows of 6 finite numbers below this line")
+    return np.array(rows)
+
+
+def _wires(main: Text, named: Named, height: float) -> tuple[tuple[float, Array], ...]:
+    """Heights and horizontal stiffness of guy wires."""
+    if "n_attachments" not in named or value(main, named, "n_attachments") == 0:
+        return ()
+    count = whole(main, named, "n_attachments")
+    columns = [_row(main, named, name, count) for name in ("n_wires", "node_attach", "wire_stfness", "th_wire")]
+    nodes = [number for line in main.lines[named["nselt"][0] + 1 : named["nselt"][0] + 4] for number in leading(line)]
+    out = []
+    for n, node, k, angle in zip(*columns, strict=True):
+        if not 1 < node <= len(nodes):
+            raise CaseError(f"{main.path}: node_attach: {node:g}: el_loc has {len(nodes)} nodes; correct one")
+        lateral = 0.5 * n * k * np.cos(np.radians(angle)) ** 2
+        out.append((height * nodes[int(node) - 1], lateral * np.diag([0.0, 1.0, 1.0, 0.0, 0.0, 0.0])))
+    return tuple(out)
+
+
+def _row(main: Text, named: Named, name: str, count: int) -> list[float]:
+    """The first ``count`` numbers of the line that ends in a name."""
+    k = next((k for k, line in enumerate(main.lines) if f"{name}:" in line or f" {name} " in line), None)
+    found = leading(main.lines[k]) if k is not None else []
+    if k is None or len(found) < count or not np.isfinite(found[:count]).all():
+        raise CaseError(f"{main.path}: {name}: give {count} finite numbers, one for each attachment of wires")
+    return found[:count]
+
+
+def _soil(main: Text, named: Named, height: float) -> Array | None:
+    """Distributed stiffness: heights above the base, and N/m²."""
+    if "n_secs_k_distr" not in named or value(main, named, "n_secs_k_distr") == 0:
+        return None
+    count = whole(main, named, "n_secs_k_distr")
+    columns = [_row(main, named, name, count) for name in ("z_distr_k", "distr_k")]
+    if max(columns[0]) > height:
+        raise CaseError(f"{main.path}: z_distr_k: up to {max(columns[0]):g} m: the tower is {height:g} m high")
+    return np.array(columns).T
+
+
+def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
+    out: list[Unused] = []
+    why = "masses of a platform and of water are not included"
+    if "mass_pform" in named:
+        out += unused("mass_pform", [value(main, named, "mass_pform")], "kg", main.path, why)
+    out += unused("hydro_M", _matrix(main, "hydro_M").ravel(), "kg, kg m, kg m²", main.path, why)
+    if "n_secs_m_distr" in named:
+        out += unused("distr_m", [value(main, named, "n_secs_m_distr")], "sections", main.path, why)
+    return tuple(out)

@@ -1,0 +1,83 @@
+"""``southwell modes`` of a tower that stands alone."""
+
+from pathlib import Path
+
+import msgspec
+import numpy as np
+
+from ....cases.input.errors import NO_STATE, CaseError
+from ....cases.input.machines import towers
+from ....core.rotor.tower import TowerModes, tower_modes
+from ...campbell import tables
+from ...campbell.tables import Sheet
+from ...shared import not_used
+from ...shared.certain import certain, relative
+from ...shared.console import output
+from ..errors import UsageError
+
+
+def is_tower(name: str) -> bool:
+    """Whether a name is the file of a tower without a rotor."""
+    return towers.is_tower(Path(name))
+
+
+def run(name: str, modes: int, json: bool, **given: bool) -> None:
+    """Compute and print the natural frequencies of a tower.
+
+    Args:
+        name: the file.
+        modes: number of modes, from the lowest.
+        json: print JSON.
+        given: options of blades by name, and whether each is given.
+
+    Raises:
+        CaseError: the file cannot be read, or the tower does not carry its weight.
+        UsageError: an option applies to blades only.
+    """
+    for option, used in given.items():
+        if used:
+            raise UsageError(f"--{option.replace('_', '-')}: {name} is a tower, which does not turn: leave it out")
+    tower, source = towers.read(Path(name))
+    try:
+        found = tower_modes(tower, modes)
+    except NO_STATE as error:
+        raise CaseError(f"{name}: {error}") from error
+    if json:
+        print(msgspec.json.format(msgspec.json.encode(_rows(tower.beam.name, found))).decode())
+        return
+    console = output()
+    console.print(tables.terminal(_sheet(tower.beam.name, found), console.width))
+    files = ", ".join(file.name for file in source.files)
+    for line in (f"{source.format}: {files}", f"axes: {source.axes}", *source.notes):
+        console.print(line, style="dim", markup=False)
+    not_used.show(source.unused, console)
+
+
+def _sheet(name: str, found: TowerModes) -> Sheet:
+    rows = [
+        (label, certain(frequency, doubt), relative(doubt), f"{100 * part:.0f} %")
+        for label, frequency, doubt, part in zip(
+            found.names,
+            (found.frequencies / (2 * np.pi)).tolist(),
+            found.uncertainty.tolist(),
+            found.confidence.tolist(),
+            strict=True,
+        )
+    ]
+    note = "The confidence is the part of the kinetic energy in the motion that names a mode."
+    return Sheet(f"{name}: natural frequencies", ("mode", "Hz", "± relative", "confidence"), tuple(rows), note)
+
+
+def _rows(name: str, found: TowerModes) -> list[dict[str, object]]:
+    return [
+        {
+            "tower": name,
+            "mode": k + 1,
+            "name": found.names[k],
+            "frequency_rad_s": float(found.frequencies[k]),
+            "frequency_hz": float(found.frequencies[k] / (2 * np.pi)),
+            "relative_uncertainty": float(found.uncertainty[k]),
+            "confidence": float(found.confidence[k]),
+        }
+        for k in range(len(found.names))
+    ]

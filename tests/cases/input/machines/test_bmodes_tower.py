@@ -1,0 +1,121 @@
+"""BModes' files of a tower: the certification tests 3 and 4, and a base on springs."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input import readers
+from southwell.cases.input.errors import CaseError
+from southwell.cases.input.machines import towers
+from southwell.core.rotor.tower import tower_modes
+from southwell.tests.core.rotor.test_tower import BMODES_ELEMENTS, BMODES_SECTIONS, HEIGHT
+
+AXIAL = (61.868e9, 55.222e9, 48.953e9, 43.061e9, 37.548e9, 32.411e9, 27.653e9, 23.272e9, 19.268e9, 15.643e9)
+
+FACTORS = (
+    *("sec_mass_mult", "flp_iner_mult", "lag_iner_mult", "flp_stff_mult", "edge_stff_mult", "tor_stff_mult"),
+    *("axial_stff_mult", "cg_offst_mult", "sc_offst_mult", "tc_offst_mult"),
+)
+
+MAIN = """BModes main file
+2 beam_type
+0. romg
+{height} radius
+0. hub_rad
+{kind} hub_conn
+78055.8 tip_mass
+-3.3 cm_loc
+2960437. ixx_tip
+3253223. iyy_tip
+3264220. izz_tip
+0. ixy_tip
+-18400. izx_tip
+0. iyz_tip
+'sections.dat' sec_props_file
+{factors}
+12 nselt
+boundaries of elements
+{elements}
+{more}
+"""
+
+WIRES = """2 n_attachments: number
+3 3 n_wires: number at each
+6 10 node_attach: nodes
+9.0e9 1.6e9 wire_stfness: N/m
+45. 30. th_wire: degrees
+"""
+
+
+def write(folder: Path, factor: float = 1.0, more: str = "0 n_attachments:", kind: int = 1) -> Path:
+    rows = [
+        f"{k / 9:.5f} 0 0 {m} {i} {i} {b} {b} {t} {a} 0 0 0"
+        for k, ((m, i, b, t), a) in enumerate(zip(BMODES_SECTIONS.tolist(), AXIAL, strict=True))
+    ]
+    (folder / "sections.dat").write_text("sections\n10 n_secs\n\nsec_loc ...\n(-) ...\n" + "\n".join(rows) + "\n")
+    text = MAIN.format(
+        height=HEIGHT,
+        kind=kind,
+        factors="\n".join(f"{factor} {name}" for name in FACTORS),
+        elements=" ".join(str(x) for x in BMODES_ELEMENTS),
+        more=more,
+    )
+    path = folder / "tower.bmi"
+    path.write_text(text)
+    return path
+
+
+@pytest.mark.parametrize(
+    ("factor", "more", "printed"),
+    [
+        (1.0, "0 n_attachments:", (0.41908, 0.42087, 2.1977, 2.4880, 2.5800)),
+        (0.25, WIRES, (0.55780, 0.58291, 1.1727)),
+    ],
+    ids=["3", "4"],
+)
+def test_certification(tmp_path: Path, factor: float, more: str, printed: tuple[float, ...]) -> None:
+    """Test03_tower.out and Test04_wires_supported_tower.out of BModes 1.03, read with properties linear between sections."""
+    path = write(tmp_path, factor, more)
+    assert towers.is_tower(path)
+    tower, source = towers.read(path)
+    found = tower_modes(tower, len(printed))
+    np.testing.assert_allclose(found.frequencies / (2 * np.pi), printed, rtol=5e-3)
+    assert found.names[:2] == ("1st side-side", "1st fore-aft")
+    assert "without weight, as in BModes" in source.notes
+
+
+def matrix(name: str, values: np.ndarray) -> str:
+    return f"6x6 matrix ({name}):\n" + "\n".join(" ".join(f"{v:g}" for v in row) for row in values) + "\n"
+
+
+def test_a_base_on_springs_below_the_sea(tmp_path: Path) -> None:
+    """mooring_K is about a point 5 m below the base: lifted there, its translations tilt with it."""
+    lateral, rocking = 2e9, 3e11
+    K = np.diag([lateral, lateral, 0.0, rocking, rocking, 0.0])
+    more = f"10. draft\n15. ref_msl\n7. mass_pform\n{matrix('hydro_K', np.zeros((6, 6)))}{matrix('mooring_K', K)}"
+    tower, source = towers.read(write(tmp_path, more=more, kind=3))
+    assert tower.beam.length == pytest.approx(HEIGHT + 10.0)
+    base = tower.support.base
+    assert base is not None
+    assert np.isinf(base[[0, 3], [0, 3]]).all()
+    # rotation ω about a horizontal axis at the base displaces the point below by 5 m ω
+    assert base[4, 4] == pytest.approx(rocking + 25.0 * lateral)
+    assert base[2, 4] == pytest.approx(5.0 * lateral)
+    assert base[1, 5] == pytest.approx(-5.0 * lateral)
+    assert "mass_pform" in str(source.unused[0])
+    assert tower_modes(tower, 1).frequencies[0] > 0
+
+
+@pytest.mark.parametrize(
+    ("kind", "more", "said"),
+    [(2, "", "hub_conn: 2"), (3, "", "moves freely"), (1, WIRES.replace("6 10", "6 99"), "node_attach: 99")],
+)
+def test_what_is_not_a_tower_on_the_ground_is_refused(tmp_path: Path, kind: int, more: str, said: str) -> None:
+    with pytest.raises(CaseError, match=said):
+        towers.read(write(tmp_path, more=more, kind=kind))
+
+
+def test_it_is_no_blade(tmp_path: Path) -> None:
+    with pytest.raises(CaseError, match="a tower; give the file of a blade"):
+        readers.reading(write(tmp_path))

@@ -1,0 +1,149 @@
+"""Turbines and towers in TOML: the same machine as that of a deck, springs in the right directions, and clear refusals."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from southwell.cases.input.errors import CaseError
+from southwell.cases.input.machines import towers, turbines
+from southwell.cases.input.readers.openfast import turbine as openfast
+from southwell.core.rotor.tower import tower_modes
+from southwell.core.rotor.turbine import machine
+from southwell.core.rotor.turbine_modes import turbine_modes
+from southwell.tests.support.turbine_decks import deck
+
+TURBINE = """
+name = "small"
+gravity = 9.81
+rotor_speed = 20.0
+
+[tower]
+height = 30.0
+file = "tower.dat"
+top = {mass = 100.0}
+
+[nacelle]
+mass = 9000.0
+centre = [0.6, 0.2, 0.9]
+moments = [0.0, 0.0, 16400.0]  # 20000 kg m² about the yaw axis
+shaft_height = 1.1
+overhang = -2.5
+tilt = -5.0
+yaw_stiffness = 3.0e7
+
+[hub]
+mass = 3000.0
+inertia = 2000.0
+centre = 0.1
+
+[rotor]
+blade = "blade.dat"
+length = 20.0
+hub_radius = 1.0
+precone = -3.0
+
+[drivetrain]
+stiffness = 2.0e7
+generator_inertia = 20.0
+gear_ratio = 50.0
+"""
+
+TOWER = """
+gravity = 0.0
+
+[tower]
+height = 20.0
+stations = [0.0, 20.0]
+mass = [100.0, 100.0]
+EI_fore_aft = [3e7, 3e7]
+EI_side_side = [2e7, 2e7]
+GJ = [1e8, 1e8]
+"""
+
+
+def write(folder: Path, text: str) -> Path:
+    path = folder / "machine.toml"
+    path.write_text(text)
+    return path
+
+
+def test_a_turbine_in_toml_is_that_of_the_deck(tmp_path: Path) -> None:
+    fst = deck(tmp_path)
+    exact = openfast.read(fst)
+    found = turbines.read(write(tmp_path, TURBINE))
+    assert turbines.is_turbine(tmp_path / "machine.toml")
+    assert found.speed == pytest.approx(exact.speed)
+    both = [turbine_modes(machine(read.turbine), 1.0, 12) for read in (found, exact)]
+    np.testing.assert_allclose(both[0].frequencies, both[1].frequencies, rtol=1e-9)
+    assert both[0].names == both[1].names
+    assert "AdjBlMs" in " ".join(found.source.notes)
+    assert "BldFl1Sh" not in str(found.source.unused)
+
+
+def test_a_free_generator_and_springs_under_the_tower(tmp_path: Path) -> None:
+    deck(tmp_path)
+    text = TURBINE.replace("gear_ratio", 'generator = "free"\ngear_ratio')
+    matrix = np.diag([2e8, 1e8, 3e9, 4e9, 5e9, 6e9]).tolist()
+    text += f"\n[tower.support]\nstiffness = {matrix}\n"
+    found = turbines.read(write(tmp_path, text)).turbine
+    assert found.drivetrain.free
+    assert found.support.base is not None
+    # ours: up, to starboard, downwind
+    np.testing.assert_allclose(np.diagonal(found.support.base), [3e9, 1e8, 2e8, 6e9, 5e9, 4e9])
+    assert turbine_modes(machine(found), 1.0, 1).frequencies[0] > 0
+
+
+def test_a_tower_in_toml(tmp_path: Path) -> None:
+    path = write(tmp_path, TOWER)
+    assert towers.is_tower(path)
+    assert not turbines.is_turbine(path)
+    tower, source = towers.read(path)
+    found = tower_modes(tower, 2)
+    unit = 3.51601527 / 20.0**2 * np.sqrt(1 / 100.0)
+    np.testing.assert_allclose(found.frequencies, [unit * np.sqrt(2e7), unit * np.sqrt(3e7)], rtol=1e-6)
+    assert found.names == ("1st side-side", "1st fore-aft")
+    assert "rigid ground: platform and water are not included" in source.notes
+
+
+def test_springs_act_in_their_directions(tmp_path: Path) -> None:
+    """A spring downwind raises the fore-aft mode alone, and so does soft tilting about the port axis lower it alone."""
+    stiff = TOWER + "[[tower.support.springs]]\nheight = 20.0\ndownwind = 1e5\nport = 0.0\n"
+    rows = np.diag([0.0, 0.0, 0.0, 0.0, 1e7, 0.0]).tolist()
+    rest = '["downwind", "port", "up", "roll", "yaw"]'
+    soft = f"{TOWER}[tower.support]\nstiffness = {rows}\nclamped = {rest}\n"
+    plain, stiffened, softened = (
+        dict(zip(m.names, m.frequencies, strict=True))
+        for m in (tower_modes(towers.read(write(tmp_path, text))[0], 4) for text in (TOWER, stiff, soft))
+    )
+    assert stiffened["1st side-side"] == pytest.approx(plain["1st side-side"], rel=1e-9)
+    assert stiffened["1st fore-aft"] > 1.5 * plain["1st fore-aft"]
+    assert softened["1st side-side"] == pytest.approx(plain["1st side-side"], rel=1e-9)
+    assert softened["1st fore-aft"] < 0.95 * plain["1st fore-aft"]
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("[hub]\nmass = 3000.0\ninertia = 2000.0\ncentre = 0.1\n", "", "hub: missing"),
+        ("overhang", "overhung", "overhung: unknown key"),
+        ('blade = "blade.dat"', 'blade = "blade.dat"\nblades = 2', "give 3 or more"),
+        ('file = "tower.dat"', "stations = [0.0, 30.0]", "tower.mass: missing"),
+        ('file = "tower.dat"', 'file = "tower.dat"\nmass = [1.0]', "leave one out"),
+        ("height = 30.0", "height = 30.0\nsupport = {stiffness = [[1.0]]}", "6 rows of 6"),
+        ("height = 30.0", 'height = 30.0\nsupport = {clamped = ["up"]}', "leave it out"),
+        ("height = 30.0", "height = 30.0\nsupport = {soil = [[0.0, 1e6], [40.0, 1e6]]}", "30 m high"),
+    ],
+)
+def test_a_wrong_file_is_refused(tmp_path: Path, old: str, new: str, said: str) -> None:
+    deck(tmp_path)
+    path = write(tmp_path, TURBINE.replace(old, new))
+    with pytest.raises(CaseError, match=said):
+        turbines.read(path)
+
+
+def test_other_files_are_no_machines(tmp_path: Path) -> None:
+    blade = write(tmp_path, '[blade]\nkind = "beam"\n')
+    assert not turbines.is_turbine(blade)
+    assert not towers.is_tower(blade)
+    assert not towers.is_tower(tmp_path / "missing.bmi")
