@@ -68,7 +68,33 @@ def reduced(mesh: Mesh, state: Steady, count: int, by_tip: bool = False) -> Comp
     loads = _at_tip(p) if by_tip else np.concatenate([_loads(p.M, p, moved), _loads(p.C, p, moved)])
     loads = loads[np.abs(loads).max(1) > 1e-12 * np.abs(loads).max()]
     elimination.solve(p.factor, loads)
-    vectors, frequencies = _orthogonal(p, np.concatenate([lowest, loads]))
+    return _restricted(mesh, state, np.concatenate([lowest, loads]))
+
+
+def restricted(mesh: Mesh, state: Steady, rates: Array) -> Component:
+    """A part that moves in the given rates (k, dn) of (η, β) alone, about its steady state: a Galerkin method."""
+    return _restricted(mesh, state, with_strains(mesh, state, rates))
+
+
+def with_strains(mesh: Mesh, state: Steady, rates: Array) -> Array:
+    """(k, dn) motions (ρ, β) with these rates of (η, β) at a steady state.
+
+    The strains η of an element are the logarithm of the pose of its end b in the frame of its end a, and ρ = T(η) η̇. The same
+    ρ in every state would stretch and twist a blade that is bent.
+    """
+    n = len(mesh.parent)
+    motions = rates.reshape(len(rates), n, rates.shape[1] // n).copy()
+    tangent = sp.tangent(sp.log(state.shape.relative @ mesh.corner))
+    motions[..., :6] = np.einsum("nij,knj->kni", tangent, motions[..., :6])
+    return motions.reshape(rates.shape)
+
+
+def _restricted(mesh: Mesh, state: Steady, motions: Array) -> Component:
+    """A part that moves in the given motions (k, dn) of (ρ, β) alone."""
+    p = state.pencil
+    frame = sp.adjoint(sp.inverse(mesh.nodes[0]))  # from the carrying frame to node 0
+    moved = _carried(p, np.zeros((6, motions.shape[1])), frame.T)
+    vectors, frequencies = _orthogonal(p, motions) if len(motions) else (motions, np.zeros(0))
     local = np.concatenate([_carried(p, vectors, np.zeros((len(vectors), 6))), moved])
     M, C, K = (np.einsum("xni,nij,ynj->xy", local, part, local, optimize=True) for part in (p.M, p.C, p.K))
     tip = twists(p.links, vectors)[:, -1, :6].T
@@ -78,7 +104,7 @@ def reduced(mesh: Mesh, state: Steady, count: int, by_tip: bool = False) -> Comp
 def _carried(p: TreePencil, x: Array, root: Array) -> Array:
     """(m, n, d + 6) motions (ξ_a, ρ, β) of the elements from x (m, dn) and twists of node 0 (m, 6)."""
     parent, to_child = p.links.parent, p.links.to_child
-    own = x.reshape(len(x), len(parent), -1)
+    own = x.reshape(len(x), len(parent), x.shape[1] // len(parent))
     nodes = np.zeros((len(x), len(parent) + 1, 6))
     nodes[:, 0] = root
     for k, a in enumerate(parent):

@@ -28,6 +28,7 @@ from ..threads import one_thread
 from ..tree.links import Links
 from ..tree.pencil import Shape
 from . import component, multiblade
+from .assumed import Assumed, motions
 from .component import Component
 from .periodic import CONSTANT, PeriodicError
 from .tower import Support, held, tower_mesh
@@ -152,7 +153,14 @@ def shaft_pose(to_shaft: float, overhang: float, tilt: float) -> Array:
 
 @dataclass(frozen=True)
 class Machine:
-    """A turbine with what does not depend on the speed."""
+    """A turbine with what does not depend on the speed.
+
+    Attributes:
+        turbine, resolution: of which it is made.
+        tower, tower_mesh, tower_state: the tower under the weight that it carries.
+        blade_mesh: the elements of one blade.
+        blade_motions: (k, dn) rates of strains to which the blades are restricted; None if they are free.
+    """
 
     turbine: Turbine
     resolution: Resolution
@@ -160,18 +168,25 @@ class Machine:
     tower_mesh: Mesh
     tower_state: Steady
     blade_mesh: Mesh
+    blade_motions: Array | None = None
 
     def yaw_energy(self, motion: NDArray[np.complex128]) -> Array:
         """(m,) twice the energy of the yaw bearing in motions (t, m) of the tower; 0 if it is locked."""
         if np.isinf(self.turbine.yaw):
             return np.zeros(motion.shape[1])
         link = self.tower_mesh.joints[-1].link
-        rotation = self.tower.vectors.reshape(self.tower.size, len(self.tower_mesh.parent), -1)[:, link, 3]
+        n = len(self.tower_mesh.parent)
+        rotation = self.tower.vectors.reshape(self.tower.size, n, self.tower.vectors.shape[1] // n)[:, link, 3]
         return self.turbine.yaw * np.abs(rotation @ motion) ** 2
 
 
-def machine(turbine: Turbine, resolution: Resolution | None = None) -> Machine:
+def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Assumed | None = None) -> Machine:
     """Mesh a turbine, and solve its tower under the weight of all that it carries.
+
+    Args:
+        turbine: the turbine.
+        resolution: elements and modes.
+        assumed: shapes to which tower and blades are restricted.
 
     Raises:
         ValueError: fewer than three blades.
@@ -189,10 +204,15 @@ def machine(turbine: Turbine, resolution: Resolution | None = None) -> Machine:
         mesh = _tower(turbine, how, turbine.nacelle + rotor)
         state = balance(mesh, 0.0, np.array([-turbine.gravity, 0.0, 0.0]), ALL_EFFECTS)
         state = held(turbine.tower, turbine.support, how.tower_elements, state)
-        tower = component.reduced(mesh, state, how.tower_modes, by_tip=True)
+        tower_motions, blade_motions = motions(assumed, (turbine.tower, mesh), (turbine.blade, blade_mesh))
+        if tower_motions is None:
+            tower = component.reduced(mesh, state, how.tower_modes, by_tip=True)
+        else:
+            tower = component.restricted(mesh, state, tower_motions)
     r = tower.size
     M = tower.M[:r, :r] - tower.tip.T @ rotor @ tower.tip  # the rotor is added with its blades
-    return Machine(turbine, how, replace(tower, M=M, C=tower.C[:r, :r], K=tower.K[:r, :r]), mesh, state, blade_mesh)
+    alone = replace(tower, M=M, C=tower.C[:r, :r], K=tower.K[:r, :r])
+    return Machine(turbine, how, alone, mesh, state, blade_mesh, blade_motions)
 
 
 def assemble(made: Machine, omega: float) -> Assembled:
@@ -205,7 +225,10 @@ def assemble(made: Machine, omega: float) -> Assembled:
     turbine = made.turbine
     with one_thread():
         state = balance(made.blade_mesh, omega, np.zeros(3), ALL_EFFECTS)
-        blade = component.reduced(made.blade_mesh, state, made.resolution.blade_modes)
+        if made.blade_motions is None:
+            blade = component.reduced(made.blade_mesh, state, made.resolution.blade_modes)
+        else:
+            blade = component.restricted(made.blade_mesh, state, made.blade_motions)
     coupled = rotor(turbine, blade, omega, 0.0)
     _check_constant(coupled, rotor(turbine, blade, omega, 0.7), abs(omega) + float(blade.frequencies[0]))
     t, r, n = made.tower.size, blade.size, turbine.blades

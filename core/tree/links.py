@@ -42,7 +42,8 @@ class Links:
 
 def twists(links: Links, x: Array) -> Array:
     """B x: (k, n, d) ξ_b and β of vectors x (k, dn)."""
-    out = x.reshape(len(x), len(links.parent), -1).copy()
+    n = len(links.parent)
+    out = x.reshape(len(x), n, x.shape[1] // n).copy()
     kernels.twists(links.arrays, out)
     return out
 
