@@ -3,7 +3,7 @@
 import re
 from collections import defaultdict
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 
@@ -111,6 +111,19 @@ class AzimuthSet:
             derivative = None if None in rates else tuple(k for k in rates if k is not None)
             out.append(BladeGroup(kind, rate, tuple(k for k in members if k is not None), derivative))
         return tuple(out)
+
+
+def first_azimuths(each: AzimuthSet, count: int) -> AzimuthSet:
+    """A set with the first ``count`` of its files."""
+    return replace(
+        each,
+        files=each.files[:count],
+        A=each.A[:count],
+        half=each.half[:count],
+        values=each.values[:count],
+        accelerations=each.accelerations[:count],
+        order=each.order[:count],
+    )
 
 
 def stem(path: Path) -> str:

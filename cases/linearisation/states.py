@@ -33,6 +33,7 @@ _BLADE = re.compile(r"\bblade\s*(\d+)|DOF_B[FE]\((\d+)\s*,", re.IGNORECASE)
 _BLADE_NUMBER = re.compile(r"(\bblade\s*)\d+|(DOF_B[FE]\()\d+(?=\s*,)", re.IGNORECASE)
 _VELOCITY = re.compile(r"\bvelocity\b")
 _NODE = re.compile(r"\bnode (\d+)")
+_ORDER = re.compile(r"\belement order = (\d+)")
 _DIRECTION = re.compile(r"(translational|rotational) displacement in ([XYZ])")
 
 _FAMILIES = (
@@ -126,6 +127,12 @@ class State:
         """Kind of displacement, direction 0 to 2 and node of a state of a finite element node; else None."""
         node, direction = _NODE.search(self.name), _DIRECTION.search(self.name)
         return (direction[1], "XYZ".index(direction[2]), int(node[1])) if node and direction else None
+
+    @property
+    def element_order(self) -> int | None:
+        """Order of the only finite element of a blade, to which a node's state belongs; None if there are several."""
+        order = _ORDER.search(self.name)
+        return int(order[1]) if order and "number of elements = 1;" in self.name else None
 
     @property
     def expected_rotating(self) -> bool | None:

@@ -6,9 +6,10 @@ from typing import Annotated
 import msgspec
 from cyclopts import Parameter
 
-from ...cases.linearisation import machine
 from ...cases.linearisation.judged import YES
 from ...cases.linearisation.judgement import judge
+from ...cases.linearisation.machine import deck
+from ...cases.linearisation.machine.split import compare
 from ..linearisation import text
 from ..shared.console import output
 from ..shared.statuses import FAILED, PASSED
@@ -33,21 +34,22 @@ def command(
         Files `case.*.lin`, also compressed (.gz): those with the same stem are the azimuths of one operating point. Tables of
         modes: .csv, HAWCStab2's .cmb.
     fst
-        Primary file (.fst) of the turbine: list the modes of the deck in vacuo beside those of the linearisations.
+        Primary file (.fst) of the turbine: pair the modes with those of Southwell's turbine by shape, and split each difference
+        into the deck's mode shapes and nodes, gravity, deflection, aerodynamics, and the rest with its causes.
     all
         List all modes, also those of aerodynamics and waves.
     json
         Print JSON: verdict, findings, and the modes of every operating point.
     """
-    turbine = machine.read(fst) if fst else None
+    machine = deck.read(fst) if fst else None
     judgement = judge(files)
-    decks = [machine.beside(judged, turbine) for judged in judgement.sets] if turbine else []
+    compared = [compare(judged, machine) for judged in judgement.sets] if machine else []
     if json:
-        print(msgspec.json.format(msgspec.json.encode(text.plain(judgement, decks))).decode())
+        print(msgspec.json.format(msgspec.json.encode(text.plain(judgement, compared))).decode())
     else:
         console = output()
         for line in (text.verdict(judgement), *text.findings(judgement)):
             console.print(line, markup=False, soft_wrap=not console.is_terminal)
-        for table in (*text.modes(judgement, console.width, all), *text.decks(judgement, decks, console.width)):
-            console.print(table)
+        for part in (*text.modes(judgement, console.width, all), *text.decks(judgement, compared, console.width)):
+            console.print(part, markup=False, soft_wrap=isinstance(part, str) and not console.is_terminal)
     return PASSED if judgement.verdict == YES else FAILED

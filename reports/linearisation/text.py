@@ -7,7 +7,16 @@ from rich.table import Table
 
 from ...cases.linearisation.findings import DEFECT, LIMIT, NOTE, Finding
 from ...cases.linearisation.judged import NO, OPEN, YES, JudgedSet, Judgement, TrackedMode
-from ...cases.linearisation.machine import Beside
+from ...cases.linearisation.machine.split import (
+    AERODYNAMICS,
+    DEFLECTION,
+    GRAVITY,
+    NODES,
+    REST,
+    SHAPES,
+    Beside,
+    Comparison,
+)
 from ...cases.linearisation.mode_tables import ModeTable
 from ...cases.linearisation.modes import Mode
 from ..shared.table_columns import tables
@@ -96,21 +105,49 @@ def _listed(table: ModeTable, width: int, every: bool) -> Iterator[Table]:
     yield from tables(head, rows if every else rows[:MOST], width, f"{table.name}: frequency in Hz")
 
 
-def decks(judgement: Judgement, beside: Sequence[Sequence[Beside]], width: int) -> Iterator[Table]:
-    """Tables of the modes of each operating point beside those of the turbine's deck."""
-    head = ("mode", "Hz", "± %", "deck Hz", "difference %")
-    for judged, pairs in zip(judgement.sets, beside, strict=False):
-        rows = [
-            (
-                p.mode.name,
-                f"{p.mode.frequency:.5g}",
-                _uncertainty(p.mode),
-                f"{p.frequency:.5g}",
-                f"{100 * p.difference:+.2g}",
-            )
-            for p in pairs
+PARTS = (SHAPES, NODES, GRAVITY, DEFLECTION, AERODYNAMICS, REST)
+
+MIN_ORIGIN = 1e-3
+"""Relative difference beyond the structure from which on its origin is listed."""
+
+
+def decks(judgement: Judgement, compared: Sequence[Comparison], width: int) -> Iterator[Table | str]:
+    """Tables of the modes of each operating point beside those of core's turbine, with the parts of the differences."""
+    for judged, comparison in zip(judgement.sets, compared, strict=False):
+        parts = [name for name in PARTS if any(name in pair.parts for pair in comparison.modes)]
+        head = ("mode", "Hz", "± %", "core Hz", "MAC", "difference %", *(f"{name} %" for name in parts))
+        rows = [_beside(pair, parts) for pair in comparison.modes]
+        yield from tables(head, rows, width, f"{judged.each.name}: {_rpm(judged)}, beside core's turbine in vacuo")
+        origins = [
+            (pair.mode.name, pair.origin)
+            for pair in comparison.modes
+            if pair.origin and _beyond(pair) > max(MIN_ORIGIN, pair.mode.relative_uncertainty)
         ]
-        yield from tables(head, rows, width, f"{judged.each.name}: {_rpm(judged)}, beside the deck in vacuo")
+        if origins:
+            yield from tables(("mode", "largest term beyond the structure"), origins, width, "")
+        if comparison.remark:
+            yield f"{judged.each.name}: {comparison.remark}"
+
+
+def _beside(pair: Beside, parts: Sequence[str]) -> tuple[str, ...]:
+    return (
+        pair.mode.name,
+        f"{pair.mode.frequency:.5g}",
+        _uncertainty(pair.mode),
+        f"{pair.frequency:.5g}",
+        f"{pair.mac:.2f}",
+        *(_percent(value) for value in (pair.difference, *(pair.parts.get(name, 0.0) for name in parts))),
+    )
+
+
+def _percent(value: float) -> str:
+    """A relative difference in percent, without the sign of a zero."""
+    return f"{round(100 * value, 2):+.2f}".replace("-0.00", "0.00").replace("+0.00", "0.00")
+
+
+def _beyond(pair: Beside) -> float:
+    """Size of what is no part of the structure, relative."""
+    return max(abs(pair.parts.get(name, 0.0)) for name in (AERODYNAMICS, REST))
 
 
 def _structural(track: TrackedMode) -> bool:
@@ -136,11 +173,8 @@ def _count(n: int, what: str, several: str = "") -> str:
     return f"{n} {what if n == 1 else several or what + 's'}"
 
 
-def plain(judgement: Judgement, beside: Sequence[Sequence[Beside]] = ()) -> dict[str, object]:
-    """The judgement as data for JSON; ``beside``: the modes of each operating point beside those of the deck."""
-    frequencies = [{pair.mode.name: pair.frequency for pair in pairs} for pairs in beside] or [
-        {} for _ in judgement.sets
-    ]
+def plain(judgement: Judgement, compared: Sequence[Comparison] = ()) -> dict[str, object]:
+    """The judgement as data for JSON; ``compared``: the modes of each operating point beside those of core's turbine."""
     return {
         "verdict": judgement.verdict,
         "findings": [_plain_finding(finding) for finding in judgement.findings],
@@ -151,9 +185,31 @@ def plain(judgement: Judgement, beside: Sequence[Sequence[Beside]] = ()) -> dict
                 "omega_rad_s": judged.each.omega,
                 "wind_speed_m_s": _finite(judged.each.files[0].wind_speed),
                 "method": judged.method,
-                "modes": [_plain_mode(mode, deck.get(mode.name)) for mode in judged.modes],
+                "modes": [_plain_mode(mode) for mode in judged.modes],
+                **(_plain_comparison(compared[k]) if k < len(compared) else {}),
             }
-            for judged, deck in zip(judgement.sets, frequencies, strict=True)
+            for k, judged in enumerate(judgement.sets)
+        ],
+    }
+
+
+def _plain_comparison(comparison: Comparison) -> dict[str, object]:
+    return {
+        "machine": [
+            {
+                "mode": pair.mode.name,
+                "core_frequency_hz": pair.frequency,
+                "mac": pair.mac,
+                "difference": pair.difference,
+                "parts": pair.parts,
+                "origin": pair.origin,
+            }
+            for pair in comparison.modes
+        ],
+        "remark": comparison.remark,
+        "causes": [
+            {"cause": cause.name, "factor": cause.factor, "explained": cause.explained, "named": cause.named}
+            for cause in comparison.causes
         ],
     }
 
@@ -169,7 +225,7 @@ def _plain_finding(finding: Finding) -> dict[str, object]:
     }
 
 
-def _plain_mode(mode: Mode, deck: float | None) -> dict[str, object]:
+def _plain_mode(mode: Mode) -> dict[str, object]:
     return {
         "name": mode.name,
         "frequency_hz": mode.frequency,
@@ -177,7 +233,6 @@ def _plain_mode(mode: Mode, deck: float | None) -> dict[str, object]:
         "relative_uncertainty": _finite(mode.relative_uncertainty),
         "participation": dict(mode.participation),
         "structural": mode.structural,
-        "deck_frequency_hz": deck,
     }
 
 

@@ -1,22 +1,18 @@
 """Defects planted into healthy sets are found by name; healthy sets have none."""
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import pytest
 
 from southwell.cases.linearisation.findings import DEFECT, LIMIT
-from southwell.cases.linearisation.judgement import judge_set
-from southwell.cases.linearisation.lin_file import parsed
-from southwell.cases.linearisation.sets import azimuth_set
 from southwell.tests.support.linearised_defects import DEFECTS, HEALTHY, Defect, healthy
 from southwell.tests.support.linearised_machines import Lin, without
+from southwell.tests.support.linearised_page import PAGE, found, row
 
 
 def findings(lins: Sequence[Lin]) -> dict[str, str]:
     """Level of each finding by name."""
-    each = azimuth_set("case", [parsed(Path(f"case.{k + 1}.lin"), lin.text()) for k, lin in enumerate(lins)])
-    return {finding.name: finding.level for finding in judge_set(each).findings}
+    return {finding.name: finding.level for finding in found(lins)}
 
 
 @pytest.mark.parametrize("name", HEALTHY)
@@ -26,9 +22,10 @@ def test_a_healthy_set_has_no_finding(name: str) -> None:
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda defect: defect.title)
 def test_a_planted_defect_is_found_by_its_name_alone(defect: Defect) -> None:
-    found = findings(defect.plant())
-    assert set(defect.names) & set(found)
-    assert {name for name, level in found.items() if level == DEFECT} <= set(defect.names)
+    own = found(defect.plant())
+    assert set(defect.names) & {finding.name for finding in own}
+    assert {finding.name for finding in own if finding.level == DEFECT} <= set(defect.names)
+    assert row(defect, own) in PAGE.read_text(encoding="utf-8")
 
 
 def test_limits_of_the_evidence() -> None:
@@ -45,6 +42,6 @@ def test_a_displacement_without_its_rate_is_found() -> None:
 
 
 def test_the_page_has_every_planted_defect() -> None:
-    page = Path(__file__).parents[3].joinpath("docs", "linearisations.md").read_text(encoding="utf-8")
-    rows = [line.split(" | ")[:2] for line in page.splitlines() if line.startswith("| ")]
+    table = PAGE.read_text(encoding="utf-8").partition("| planted ")[2].partition("\n\n")[0]
+    rows = [line.split(" | ")[:2] for line in ("| planted " + table).splitlines() if line.startswith("| ")]
     assert [["| " + defect.title, defect.names[0]] for defect in DEFECTS] == rows[1:]

@@ -9,6 +9,7 @@ import pytest
 from southwell.cases.linearisation.judged import Judgement
 from southwell.cases.linearisation.judgement import judge
 from southwell.cases.linearisation.lin_file import read
+from southwell.tests.support.linearised_page import PAGE, session, sessions
 
 FOLDER = os.environ.get("SOUTHWELL_LINEARISED")
 
@@ -74,3 +75,10 @@ def test_a_floating_turbine_has_its_platform_modes() -> None:
     names = [mode.name for mode in found.sets[0].modes if mode.structural > 0.5]
     assert names == ["platform surge", "platform pitch", "platform heave", "tower fore-aft 1"]
     assert found.verdict == "Open"
+
+
+@pytest.mark.parametrize("words", [words for words, _ in sessions(PAGE.read_text(encoding="utf-8"))])
+def test_sessions_of_the_page_are_as_shown(words: str) -> None:
+    """``python -m southwell.tests.support.linearised_page`` writes them."""
+    blocks = dict(sessions(PAGE.read_text(encoding="utf-8")))
+    assert session(words, Path(FOLDER or "")) == blocks[words]

@@ -1,0 +1,197 @@
+"""Which alteration of the deck explains what the models leave of a difference: causes, ranked as in ``cases.diagnosis``.
+
+Each hypothesis alters the deck, and the last structural model predicts the frequencies. A cause is named only if it explains
+more than chance (``diagnosis.ranking``). With aerodynamics nothing is sought: the rest then contains its stiffness.
+"""
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import Blade
+from ...diagnosis.ranking import CHANCE, UNEXPLAINED, UNFITTED, VISIBLE, chance
+from .deck import Deck, Shape
+
+Array = NDArray[np.float64]
+Alteration = Callable[[Deck, float], Deck]
+
+STEP, FITTED, REFINED = 1.02, 4, 2
+"""Factor for the derivative of a fitted hypothesis, number of hypotheses whose factor is fitted, and of refinements."""
+
+
+@dataclass(frozen=True)
+class Hypothesis:
+    """An alteration of the deck; if ``fitted``, its factor is fitted."""
+
+    name: str
+    alter: Alteration
+    fitted: bool = False
+
+
+@dataclass(frozen=True)
+class Cause:
+    """A hypothesis that explains a difference.
+
+    Attributes:
+        name: what differs, in words.
+        factor: fitted; 1 without one.
+        explained: part of the sum of squares that it explains.
+        remains: largest relative difference that remains.
+        chance: bound of the probability that it explains as much by chance.
+    """
+
+    name: str
+    factor: float
+    explained: float
+    remains: float
+    chance: float
+    fitted: bool
+
+    @property
+    def named(self) -> bool:
+        """Whether it explains enough, and more than chance."""
+        limit = UNFITTED if self.fitted else UNEXPLAINED
+        return self.chance <= CHANCE and self.explained >= 1.0 - limit**2
+
+    def __str__(self) -> str:
+        what = f"{self.factor:.4g} × {self.name}" if self.fitted else self.name
+        return f"{what} (explains {100 * self.explained:.3g} %, leaves {100 * self.remains:.2g} %)"
+
+
+def ranked(deck: Deck, difference: Array, uncertainty: float, predict: Callable[[Deck], Array]) -> tuple[Cause, ...]:
+    """The causes of a difference, the most probable first.
+
+    Args:
+        deck: the deck that was given.
+        difference: (m,) logarithms of the ratios of the linearisation's frequencies to the model's.
+        uncertainty: relative.
+        predict: (m,) the logarithms of the model's frequencies with another deck; nan where it has no such mode.
+    """
+    base = predict(deck)
+    out: list[Cause] = []
+    fixed = [each for each in HYPOTHESES if not each.fitted]
+    factors = [each for each in HYPOTHESES if each.fitted]
+    for each in fixed:
+        change = predict(each.alter(deck, 1.0)) - base
+        if _visible(change, uncertainty):
+            out.append(_cause(each, 1.0, difference, change, uncertainty, len(fixed)))
+    slopes = {each: (predict(each.alter(deck, STEP)) - base) / np.log(STEP) for each in factors}
+    slopes = {each: slope for each, slope in slopes.items() if _visible(0.1 * slope, uncertainty)}
+    remainders = {each: _remainder(difference, slope) for each, slope in slopes.items()}
+    for each in sorted(slopes, key=remainders.__getitem__)[:FITTED]:
+        slope = slopes[each]
+        power = float(difference @ slope / (slope @ slope))
+        for _ in range(REFINED):  # the secant through the last factor
+            if not 1e-6 < abs(power) < np.log(10.0):
+                break
+            change = predict(each.alter(deck, float(np.exp(power)))) - base
+            if not _visible(change, 0.0):
+                break
+            out.append(_cause(each, float(np.exp(power)), difference, change, uncertainty, len(factors)))
+            slope = change / power
+            power = float(difference @ slope / (slope @ slope))
+    best: dict[str, Cause] = {}
+    for cause in sorted(out, key=lambda cause: (cause.chance, -cause.explained)):
+        best.setdefault(cause.name, cause)
+    return tuple(best.values())
+
+
+def _remainder(difference: Array, slope: Array) -> float:
+    """Sum of squares that remains of a difference with the best factor, to the first order."""
+    return float(difference @ difference - (difference @ slope) ** 2 / (slope @ slope))
+
+
+def _visible(change: Array, uncertainty: float) -> bool:
+    return bool(np.isfinite(change).all() and np.abs(change).max(initial=0.0) > max(VISIBLE * uncertainty, 1e-9))
+
+
+def _cause(each: Hypothesis, factor: float, D: Array, change: Array, uncertainty: float, kinds: int) -> Cause:
+    rest, size = D - change, float(D @ D)
+    share = float(max(rest @ rest, len(D) * uncertainty**2)) / size
+    return Cause(
+        each.name,
+        factor,
+        1.0 - float(rest @ rest) / size,
+        float(np.abs(rest).max()),
+        chance(share, len(D), kinds, 1 if each.fitted else 0),
+        each.fitted,
+    )
+
+
+def _blade(alter: Callable[[Blade, float], Blade]) -> Alteration:
+    return lambda deck, x: replace(deck, turbine=replace(deck.turbine, blade=alter(deck.turbine.blade, x)))
+
+
+def _tower(alter: Callable[[Blade, float], Blade]) -> Alteration:
+    return lambda deck, x: replace(deck, turbine=replace(deck.turbine, tower=alter(deck.turbine.tower, x)))
+
+
+def _stiffer(*entries: int) -> Callable[[Blade, float], Blade]:
+    def alter(beam: Blade, x: float) -> Blade:
+        stiffness = beam.stiffness.copy()
+        for k in entries:
+            stiffness[:, k, k] *= x
+        return replace(beam, stiffness=stiffness)
+
+    return alter
+
+
+def _heavier(beam: Blade, x: float) -> Blade:
+    return replace(beam, mass=x * beam.mass)
+
+
+def _untuned(shapes: dict[str, Shape]) -> dict[str, Shape]:
+    return {name: replace(shape, tuner=1.0) for name, shape in shapes.items()}
+
+
+def _generator(deck: Deck, inertia: float) -> Deck:
+    drive = replace(deck.turbine.drivetrain, generator=inertia)
+    return replace(deck, turbine=replace(deck.turbine, drivetrain=drive))
+
+
+HYPOTHESES: Sequence[Hypothesis] = (
+    Hypothesis("no gravity", lambda deck, _: replace(deck, turbine=replace(deck.turbine, gravity=0.0))),
+    Hypothesis("no precone", _blade(lambda blade, _: replace(blade, precone=0.0))),
+    Hypothesis("no hub radius", _blade(lambda blade, _: replace(blade, hub_radius=0.0))),
+    Hypothesis("no tip mass", _blade(lambda blade, _: replace(blade, tip_mass=np.zeros((6, 6))))),
+    Hypothesis("no pitch", _blade(lambda blade, _: replace(blade, pitch=0.0))),
+    Hypothesis("no twist", _blade(lambda blade, _: replace(blade, twist=np.zeros_like(blade.twist)))),
+    Hypothesis(
+        "no tuners",
+        lambda d, _: replace(d, blade_shapes=_untuned(d.blade_shapes), tower_shapes=_untuned(d.tower_shapes)),
+    ),
+    Hypothesis(
+        "many nodes",
+        lambda deck, _: replace(deck, blade_nodes=20 * deck.blade_nodes, tower_nodes=20 * deck.tower_nodes),
+    ),
+    Hypothesis("no generator", lambda deck, _: _generator(deck, 0.0)),
+    Hypothesis(
+        "the generator's inertia without the square of the gear ratio",
+        lambda deck, _: _generator(deck, deck.turbine.drivetrain.generator / deck.turbine.drivetrain.gear_ratio**2),
+    ),
+    Hypothesis("the blades' mass", _blade(_heavier), True),
+    Hypothesis("the blades' flapwise stiffness", _blade(_stiffer(4)), True),
+    Hypothesis("the blades' edgewise stiffness", _blade(_stiffer(5)), True),
+    Hypothesis("the blades' bending stiffness", _blade(_stiffer(4, 5)), True),
+    Hypothesis("the hub radius", _blade(lambda blade, x: replace(blade, hub_radius=x * blade.hub_radius)), True),
+    Hypothesis("the tower's mass", _tower(_heavier), True),
+    Hypothesis("the tower's stiffness", _tower(_stiffer(4, 5)), True),
+    Hypothesis(
+        "the nacelle's mass",
+        lambda deck, x: replace(deck, turbine=replace(deck.turbine, nacelle=x * deck.turbine.nacelle)),
+        True,
+    ),
+    Hypothesis(
+        "the hub's mass", lambda deck, x: replace(deck, turbine=replace(deck.turbine, hub=x * deck.turbine.hub)), True
+    ),
+    Hypothesis(
+        "the generator's inertia", lambda deck, x: _generator(deck, x * deck.turbine.drivetrain.generator), True
+    ),
+    Hypothesis("the shaft's stiffness", lambda deck, x: replace(deck, shaft_stiffness=x * deck.shaft_stiffness), True),
+    Hypothesis(
+        "the yaw spring", lambda deck, x: replace(deck, turbine=replace(deck.turbine, yaw=x * deck.turbine.yaw)), True
+    ),
+)
+"""Alterations of a deck that occur."""

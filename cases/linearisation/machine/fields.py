@@ -1,0 +1,192 @@
+"""Displacements by which modes of a linearisation and of core's turbine are compared: at points of tower, shaft and blades.
+
+A field holds, for each coordinate, the displacements of all points, weighted by the root of their masses, so that the scalar
+product of two shapes is one of masses. Blades are in multi-blade coordinates; a single blade counts as collective.
+"""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+from scipy.optimize import linear_sum_assignment
+
+from ....core.blade import Blade
+from ....core.element.mesh import Mesh
+from ....core.rotor.assumed import Field
+from ....core.rotor.turbine import Assembled
+from ....core.sampling import mass_at
+from ....core.space import spatial as sp
+from ....core.tree.links import Links, twists
+from ..sets import AzimuthSet
+from ..states import State
+from .deck import Deck
+from .tower import field
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+POINTS = 20
+"""Points of tower and of each blade."""
+
+MIN_MAC = 0.5
+"""Smallest MAC of a pair of modes."""
+
+
+@dataclass(frozen=True)
+class Points:
+    """Points of the tower and of a blade: distances from the root, m, and roots of their masses."""
+
+    tower: Array
+    tower_weight: Array
+    blade: Array
+    blade_weight: Array
+
+    @property
+    def size(self) -> int:
+        """Length of a field: y and z of the tower, the shaft's angle, y and z of three multi-blade coordinates."""
+        return 2 * len(self.tower) + 1 + 6 * len(self.blade)
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """Eigenvalues (m,) of modes, rad/s, and their fields (m, f)."""
+
+    values: Complex
+    fields: Complex
+
+
+def points(deck: Deck) -> Points:
+    """The points of a deck's tower and blades, in the middle of equal parts."""
+    out: list[Array] = []
+    for beam in (deck.turbine.tower, deck.turbine.blade):
+        s = (np.arange(POINTS) + 0.5) * beam.length / POINTS
+        out += [s, np.sqrt(mass_at(beam, s)[:, 0, 0] * beam.length / POINTS)]
+    top = float(deck.turbine.nacelle[0, 0] + deck.turbine.hub[0, 0])
+    out[0], out[1] = np.append(out[0], deck.turbine.tower.length), np.append(out[1], np.sqrt(top))
+    return Points(*out)
+
+
+def of_states(deck: Deck, at: Points, each: AzimuthSet) -> Array:
+    """(s, f) field of each state of a set in the fixed frame; zero of rates and of states without a displacement here."""
+    rate_of = dict(each.pairs)
+    out = np.zeros((len(each.states), at.size))
+    component = {k: n for group in each.groups for n, k in enumerate(group.members)}
+    for k, state in enumerate(each.states):
+        if k in rate_of:
+            _add(deck, at, state, component.get(k, 0), out[k])
+    return out
+
+
+def _add(deck: Deck, at: Points, state: State, component: int, row: Array) -> None:
+    t, b = len(at.tower), len(at.blade)
+    if state.family in deck.tower_shapes:
+        shape = {state.family: deck.tower_shapes[state.family]}
+        moved, _ = field(deck.turbine.tower, shape)(at.tower)
+        row[: 2 * t] = (moved[0, :, 1:] * at.tower_weight[:, None]).ravel()
+    elif state.family in ("generator", "drivetrain", "yaw"):
+        row[2 * t] = _shaft_weight(deck) if state.family != "yaw" else 0.0
+    elif state.blade and state.module == "ED" and state.family in deck.blade_shapes:
+        shape = {state.family: deck.blade_shapes[state.family]}
+        moved, _ = field(deck.turbine.blade, shape)(at.blade)
+        _blade(row, t, b, component, moved[0, :, 1:] * at.blade_weight[:, None])
+    elif state.blade and (node := state.direction) and node[0] == "translational" and node[1] < 2:
+        hats = lagrange(deck.turbine.blade.length, state.element_order, at.blade)
+        if 2 <= node[2] <= len(hats):
+            hat = hats[node[2] - 1] * at.blade_weight
+            # BeamDyn: x downwind, y to the trailing edge, against y here
+            moved = np.stack([0.0 * hat, hat] if node[1] == 0 else [-hat, 0.0 * hat], axis=-1)
+            _blade(row, t, b, component, moved)
+
+
+def _blade(row: Array, t: int, b: int, component: int, moved: Array) -> None:
+    weight = 1.0 if component == 0 else np.sqrt(0.5)
+    start = 2 * t + 1 + component * 2 * b
+    row[start : start + 2 * b] += weight * moved.ravel()
+
+
+def _shaft_weight(deck: Deck) -> float:
+    """Root of the inertia of hub and generator about the shaft."""
+    drive = deck.turbine.drivetrain
+    return float(np.sqrt(deck.turbine.hub[5, 5] + drive.generator * drive.gear_ratio**2))
+
+
+def lagrange(length: float, order: int | None, s: Array) -> Array:
+    """(p + 1, n) displacement at ``s`` by unit ones of the nodes of a finite element of order p: Lagrange's polynomials.
+
+    The nodes are Gauss, Lobatto and Legendre's. No rows without an order.
+    """
+    if order is None or order < 1:
+        return np.zeros((0, len(s)))
+    ends = np.polynomial.Legendre.basis(order).deriv().roots()
+    nodes = 0.5 * (1.0 + np.concatenate([[-1.0], np.sort(ends.real), [1.0]])) * length
+    rows = [
+        np.prod((s[:, None] - np.delete(nodes, k)) / (nodes[k] - np.delete(nodes, k)), axis=1) for k in range(order + 1)
+    ]
+    return np.array(rows)
+
+
+def element(length: float, order: int) -> Field:
+    """The field of BeamDyn's finite element: displacements and rotations of its nodes beyond the root, interpolated."""
+
+    def at(s: Array) -> tuple[Array, Array]:
+        rows = lagrange(length, order, s)[1:]
+        moved = np.einsum("kn,ab->kanb", rows, np.eye(3)).reshape(-1, len(s), 3)
+        still = np.zeros_like(moved)
+        return np.concatenate([moved, still]), np.concatenate([still, moved])
+
+    return at
+
+
+def of_core(deck: Deck, at: Points, a: Assembled) -> Array:
+    """(n, f) field of each coordinate of core's equations."""
+    t, b = len(at.tower), len(at.blade)
+    out = np.zeros((len(a.M), at.size))
+    if a.tower.size:
+        moved = _along(a.meshes[0], a.tower_links, a.tower.vectors, deck.turbine.tower, at.tower)
+        out[: a.tower.size, : 2 * t] = (moved * at.tower_weight[:, None]).reshape(a.tower.size, -1)
+    if a.shaft:
+        out[a.shaft[0], 2 * t] = _shaft_weight(deck)
+    moved = of_blade(deck, at, a.meshes[1], a.blade_links, a.blade.vectors)
+    for component, rows in enumerate(a.blades):
+        for row, shape in zip(rows, moved, strict=True):
+            _blade(out[row], t, b, component, shape)
+    return out
+
+
+def of_blade(deck: Deck, at: Points, mesh: Mesh, links: Links, vectors: Array) -> Array:
+    """(k, b, 2) weighted displacements y, z of a blade in motions (k, dn)."""
+    return _along(mesh, links, vectors, deck.turbine.blade, at.blade) * at.blade_weight[:, None]
+
+
+def _along(mesh: Mesh, links: Links, vectors: Array, beam: Blade, s: Array) -> Array:
+    """(k, len(s), 2) displacements y, z of a beam at arc lengths, in its axes without twist and pitch."""
+    base = mesh.nodes[0, :3, :3] @ sp.rotation(0, np.array(float(beam.twist[0]))).T
+    places = ((mesh.nodes[:, :3, 3] - mesh.nodes[0, :3, 3]) @ base)[:, 0]
+    local = twists(links, vectors)[..., :3]
+    moved = np.concatenate(
+        [np.zeros((len(local), 1, 3)), np.einsum("ia,nij,knj->kna", base, mesh.nodes[1:, :3, :3], local)], axis=1
+    )
+    order = np.argsort(places, kind="stable")
+    return np.array([[np.interp(s, places[order], row[order, j]) for j in (1, 2)] for row in moved]).swapaxes(1, 2)
+
+
+def paired(first: Shapes, second: Shapes) -> tuple[NDArray[np.intp], Array]:
+    """For each mode of the first the index of its partner in the second, −1 without one, and the MAC (m,)."""
+    x, y = first.fields, second.fields
+    sizes = np.outer((np.abs(x) ** 2).sum(1), (np.abs(y) ** 2).sum(1))
+    mac = np.abs(x.conj() @ y.T) ** 2 / np.where(sizes > 0, sizes, np.inf)
+    ratio = np.abs(np.log(np.abs(first.values)[:, None] / np.abs(second.values)[None, :]))
+    rows, columns = linear_sum_assignment(-mac + 0.2 * np.minimum(ratio, 1.0))
+    partner, quality = np.full(len(x), -1, dtype=np.intp), np.zeros(len(x))
+    for i, j in zip(rows, columns, strict=True):
+        quality[i] = mac[i, j]
+        if mac[i, j] >= MIN_MAC:
+            partner[i] = j
+    return partner, quality
+
+
+def chosen(shapes: Shapes, index: Sequence[int]) -> Shapes:
+    """Some of the modes."""
+    k = np.asarray(index, dtype=np.intp)
+    return Shapes(shapes.values[k], shapes.fields[k])

@@ -1,0 +1,192 @@
+"""The models between core's turbine and a linearisation, each with the modes that it has.
+
+Core's turbine, which has the elastic modes of tower and blades; the same restricted to the deck's assumed shapes; ElastoDyn's
+equations, which integrate these shapes over its nodes; the same with gravity on the blades; and at the deflections of the
+operating point. Each has the degrees of freedom that the linearisation's states have, and no aerodynamics.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import straight
+from ....core.effects import ALL_EFFECTS
+from ....core.element.discretize import discretize
+from ....core.rotor import component
+from ....core.rotor.assumed import Assumed, Field, restricted_motions
+from ....core.rotor.turbine import Machine, Resolution, assemble, machine
+from ....core.spectrum import eigen
+from ....core.spectrum.mesh_solver import balance
+from ....core.threads import one_thread
+from ...input.errors import CaseError
+from ..modes import MIN_OSCILLATION
+from ..multiblade import fixed_frame
+from ..sets import AzimuthSet
+from . import elastodyn, fields
+from .deck import Deck, Shape, for_states
+from .elastodyn import Blade, Matrices, Structure, equations
+from .fields import Points, Shapes
+from .tower import field, tower
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+HUB = ("yaw", "generator", "drivetrain")
+
+
+@dataclass(frozen=True)
+class Degrees:
+    """Degrees of freedom of a linearisation: motions of blades and tower with their assumed shapes, and of the hub.
+
+    Attributes:
+        blade: shapes of the blades' states; empty if these are not ElastoDyn's.
+        tower: shapes of the tower's states.
+        hub: which of ``HUB``.
+        order: of BeamDyn's only element in each blade; None if there is none, or several.
+    """
+
+    blade: dict[str, Shape]
+    tower: dict[str, Shape]
+    hub: tuple[str, ...]
+    order: int | None = None
+
+
+def degrees(deck: Deck, each: AzimuthSet) -> Degrees:
+    """The degrees of freedom of a set.
+
+    Raises:
+        CaseError: the set moves in a way that the machine does not, or has another number of blades.
+    """
+    rate_of = dict(each.pairs)
+    moving = [state for k, state in enumerate(each.states) if k in rate_of]
+    names = {state.family for state in moving if not state.blade}
+    other = sorted(names - {*deck.tower_shapes, *HUB})
+    if other:
+        raise CaseError(
+            f"--fst: {each.name}: state {other[0]!r}: Southwell's turbine stands on rigid ground and has no such motion: leave "
+            "out --fst"
+        )
+    if each.blades != deck.turbine.blades or each.blades == 2:
+        raise CaseError(
+            f"--fst: {each.name}: {each.blades} blades with states, {deck.turbine.blades} in the deck: give the deck of this "
+            "linearisation, with one blade or three"
+        )
+    if each.blades == 1 and names:
+        raise CaseError(
+            f"--fst: {each.name}: one blade on a hub that moves is not constant in any frame: leave out --fst"
+        )
+    flexible = {state.family for state in moving if state.blade and state.module == "ED"}
+    missing = sorted(flexible - set(deck.blade_shapes))
+    if missing:
+        raise CaseError(
+            f"--fst: {each.name}: state {missing[0]!r}: the deck's blades have no such shape: give its own deck"
+        )
+    return Degrees(
+        {name: shape for name, shape in deck.blade_shapes.items() if name in flexible},
+        {name: shape for name, shape in deck.tower_shapes.items() if name in names},
+        tuple(name for name in HUB if name in names),
+        next((state.element_order for state in moving if state.module == "BD" and state.blade), None),
+    )
+
+
+@dataclass(frozen=True)
+class Models:
+    """A deck as a set needs it.
+
+    Attributes:
+        deck, each: the deck and the set.
+        free: its degrees of freedom.
+        at: points at which shapes are compared.
+    """
+
+    deck: Deck
+    each: AzimuthSet
+    free: Degrees
+    at: Points
+
+    def core(self, restricted: bool) -> Shapes:
+        """Modes of core's machine, free or restricted to the assumed shapes."""
+        if self.each.blades == 1:
+            return _single(self, self.blade_field() if restricted else None)
+        a = assemble(self.machine(restricted), self.each.omega)
+        rigid = np.zeros((len(a.M), 0))
+        if "generator" in self.free.hub:
+            rigid = np.zeros((len(a.M), 1))
+            rigid[list(a.shaft)] = 1.0
+        with one_thread():
+            pairs = eigen.damped(a.M, a.C, a.K, None, (rigid, rigid) if rigid.size else None)
+        return _shapes(pairs.values, pairs.vectors.T @ fields.of_core(self.deck, self.at, a))
+
+    def machine(self, restricted: bool) -> Machine:
+        """The machine on the degrees of freedom of the set."""
+        turbine = for_states(self.deck, set(self.free.hub))
+        flexible = None if self.free.tower and not restricted else field(turbine.tower, self.free.tower)
+        return machine(turbine, Resolution(), Assumed(flexible, self.blade_field() if restricted else None))
+
+    def blade_field(self) -> Field | None:
+        """ElastoDyn's shapes or BeamDyn's element; None if neither is known, or the element is curved."""
+        blade = self.deck.turbine.blade
+        if self.free.blade:
+            return field(blade, self.free.blade)
+        return fields.element(blade.length, self.free.order) if self.free.order and straight(blade) else None
+
+    def structure(self) -> Structure:
+        """ElastoDyn's equations."""
+        made = self.machine(True) if self.each.blades > 1 else None
+        part = tower(self.deck, made, self.free.tower, "yaw" in self.free.hub)
+        return elastodyn.structure(self.deck, part, self.each)
+
+
+def matrices(model: Structure, each: AzimuthSet, gravity: bool, deflected: bool) -> list[Matrices]:
+    """ElastoDyn's M, C, K at each azimuth, with or without gravity on the blades and at its operating point."""
+    out: list[Matrices] = []
+    r = len(model.nodes.stiffness)
+    blade_states, blade_rates = (
+        index[len(model.families) :].reshape(model.blades, r) for index in (model.coordinates, model.rates)
+    )
+    factor = 1.0 if deflected else 0.0
+    for k, file in enumerate(each.files):
+        at = tuple(
+            Blade(
+                factor * each.values[k][q],
+                factor * each.values[k][v],
+                factor * np.nan_to_num(each.accelerations[k][v]),
+            )
+            for q, v in zip(blade_states, blade_rates, strict=True)
+        )
+        weight = model.deck.turbine.gravity if gravity else 0.0
+        out.append(equations(model, float(each.azimuths[k]), file.rotor_speed, weight, at))
+    return out
+
+
+def of_states(models: Models, A: Array) -> Shapes:
+    """Modes of state matrices (azimuth, s, s) in the states of the set, of their mean in the fixed frame."""
+    values, vectors = np.linalg.eig(fixed_frame(models.each, A).mean(axis=0).astype(np.complex128))
+    keep = np.flatnonzero(values.imag > MIN_OSCILLATION)
+    keep = keep[np.argsort(np.abs(values[keep]), kind="stable")]
+    return Shapes(values[keep], vectors[:, keep].T @ fields.of_states(models.deck, models.at, models.each))
+
+
+def _single(models: Models, restricted: Field | None) -> Shapes:
+    """Modes of one blade on a hub that turns steadily."""
+    blade = models.deck.turbine.blade
+    with one_thread():
+        mesh = discretize(blade, Resolution().blade_elements)
+        state = balance(mesh, models.each.omega, np.zeros(3), ALL_EFFECTS)
+        if restricted is None:
+            part = component.reduced(mesh, state, Resolution().blade_modes)
+        else:
+            part = component.restricted(mesh, state, restricted_motions(blade, mesh, restricted))
+        r = part.size
+        pairs = eigen.damped(part.M[:r, :r], part.C[:r, :r], part.K[:r, :r])
+    moved = fields.of_blade(models.deck, models.at, mesh, state.pencil.links, part.vectors)
+    field = np.zeros((r, models.at.size))
+    start = 2 * len(models.at.tower) + 1
+    field[:, start : start + 2 * len(models.at.blade)] = moved.reshape(r, -1)
+    return _shapes(pairs.values, pairs.vectors.T @ field)
+
+
+def _shapes(values: Complex, shapes: Complex) -> Shapes:
+    keep = np.flatnonzero((values.imag > 0) & (np.abs(shapes) ** 2).sum(1).astype(bool))
+    return Shapes(values[keep], shapes[keep])

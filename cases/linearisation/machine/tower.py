@@ -1,0 +1,90 @@
+"""The tower in ElastoDyn's assumed shapes: core's matrices restricted to them, and what ElastoDyn's nodes change of them."""
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.blade import Blade
+from ....core.rotor.assumed import Curvatures, Field, bending, restricted_motions
+from ....core.rotor.component import with_strains
+from ....core.rotor.turbine import Machine
+from ....core.sampling import mass_at, stiffness_at
+from .deck import Deck, Shape
+
+Array = NDArray[np.float64]
+
+FINE = 2000
+"""Number of stations at which curvatures are given."""
+
+
+@dataclass(frozen=True)
+class Tower:
+    """A tower without the rotor it carries, over its assumed motions and the angle of the yaw bearing, if it is free.
+
+    Attributes:
+        names: of the coordinates, as states are named.
+        M, C, K: (t, t); K contains the effect of all the weight that the tower carries.
+        tip: (6, t) twist of the tower's top in each motion.
+    """
+
+    names: tuple[str, ...]
+    M: Array
+    C: Array
+    K: Array
+    tip: Array
+
+
+def field(beam: Blade, shapes: dict[str, Shape]) -> Field:
+    """The field of shapes by motion: flapwise and fore-aft ones bend about one axis, edgewise and side-side the other."""
+    length = beam.length
+    x = np.linspace(0.0, 1.0, FINE + 1)
+    rows = np.array([shape.at(x, 2) / length**2 for shape in shapes.values()]).reshape(-1, len(x))
+    flap = np.array([name.startswith(("flapwise", "tower fore-aft")) for name in shapes], dtype=bool)[:, None]
+    # ElastoDyn's edgewise displacement is against y
+    sign = np.array([-1.0 if name.startswith("edgewise") else 1.0 for name in shapes])[:, None]
+    return bending(beam, Curvatures(x * length, np.where(flap, rows, 0.0), np.where(flap, 0.0, sign * rows)))
+
+
+def tower(deck: Deck, made: Machine | None, shapes: dict[str, Shape], yaw: bool) -> Tower:
+    """The tower of a machine that is restricted to these shapes, in their own coordinates, as ElastoDyn's nodes integrate it.
+
+    Without a machine, or any motion, it is rigid.
+    """
+    names = (*shapes, *(("yaw",) if yaw else ()))
+    if made is None or not names:
+        return Tower((), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((6, 0)))
+    part, beam = made.tower, made.turbine.tower
+    rates = restricted_motions(beam, made.tower_mesh, field(beam, shapes))
+    motions = with_strains(made.tower_mesh, made.tower_state, rates)
+    U = np.linalg.lstsq(motions.T, part.vectors.T, rcond=None)[0]  # own coordinates are U times core's
+    back = np.linalg.inv(U)
+    M, C, K = (back.T @ each @ back for each in (part.M, part.C, part.K))
+    n = len(shapes)
+    exact, coarse = (_integrals(deck, shapes, count) for count in (FINE, deck.tower_nodes or FINE))
+    tuner = np.sqrt([shape.tuner for shape in shapes.values()])
+    M[:n, :n] += coarse[0] - exact[0]
+    K[:n, :n] += coarse[1] * np.outer(tuner, tuner) - exact[1]
+    C = C.copy()
+    C[:n, :n] += coarse[2]
+    return Tower(names, M, C, K, part.tip @ back)
+
+
+def _integrals(deck: Deck, shapes: dict[str, Shape], count: int) -> tuple[Array, Array, Array]:
+    """Mass, stiffness and damping (n, n) of the tower alone, by the rule of the middle over ``count`` elements."""
+    beam = deck.turbine.tower
+    x = (np.arange(count) + 0.5) / count
+    step = beam.length / count
+    mass = mass_at(beam, x * beam.length)[:, 0, 0] * step
+    section = stiffness_at(beam, x * beam.length)
+    plain = np.array([shape.at(x) for shape in shapes.values()]).reshape(-1, count)
+    bent = np.array([shape.at(x, 2) / beam.length**2 for shape in shapes.values()]).reshape(-1, count)
+    fore = np.array([name.startswith("tower fore-aft") for name in shapes], dtype=bool)
+    M, K = np.zeros((len(shapes), len(shapes))), np.zeros((len(shapes), len(shapes)))
+    for family, rigidity in ((fore, section[:, 4, 4]), (~fore, section[:, 5, 5])):
+        for out, values, weight in ((M, plain, mass), (K, bent, rigidity * step)):
+            own = np.where(family[:, None], values, 0.0)
+            out += np.einsum("in,kn,n->ik", own, own, weight)
+    ratio = np.array([2.0 * shape.damping for shape in shapes.values()])
+    damping = K * ratio / np.sqrt(np.diagonal(K) / np.diagonal(M)) if len(shapes) else K
+    return M, K, damping
