@@ -30,7 +30,7 @@ from .alterations import (
     whole_end,
 )
 from .seeding import Fault, Trial
-from .trials import AXIAL, CONED, COUPLED, FAST, HINGED, PARK, PITCHED, TAPERED, THICK, TIP, TORSIONAL, TWISTED
+from .trials import AXIAL, CONED, COUPLED, CROSSED, FAST, HINGED, PARK, PITCHED, TAPERED, THICK, TIP, TORSIONAL, TWISTED
 
 
 def _core(name: str, what: str, size: str, seam: Any, trial: Trial, fast: bool = False) -> Fault:
@@ -141,6 +141,13 @@ FAULTS = (
         "shapes mirrored; MAC below 0.8",
         (sections, "twist_at", lambda right: lambda blade, s: -right(blade, s)),
         TWISTED,
+    ),
+    _core(
+        "twist across ±180°",
+        "the twist jumps by a turn between two stations if its sign changes there",
+        "shapes and frequencies by tens of percent",
+        (sections, "twist_at", lambda right: lambda blade, s: right(replace(blade, twist=blade.twist % (2 * np.pi)), s)),
+        CROSSED,
     ),
     _core(
         "no twist",

@@ -6,6 +6,7 @@ from typing import Any
 
 from ..input import blades
 from ..judge import convergence, pairing, refined, same, verdict
+from ..judge.convergence import Compared, RefinedMode
 from ..judge.pairing import Pair
 from ..judge.spectrum import Spectrum
 from ..judge.uncertainty import Estimate
@@ -27,11 +28,11 @@ def by_number(right: Any) -> Any:
 
 
 def next_one(right: Any) -> Any:
-    """The partner of a mode is the one after it."""
+    """The partner of a mode is the one after it, in the answers of codes only: core would be wrong in the same way."""
 
-    def wrong(reference: Spectrum, other: Spectrum, *args: Any) -> list[Pair]:
-        last = len(other.values) - 1
-        return [p if p.mode is None else replace(p, mode=min(p.mode + 1, last)) for p in right(reference, other, *args)]
+    def wrong(answers: Sequence[Spectrum], compared: Compared, *args: Any) -> list[RefinedMode]:
+        last = len(compared.spectrum.values) - 1
+        return right(answers, replace(compared, indices=tuple(min(i + 1, last) for i in compared.indices)), *args)
 
     return wrong
 
@@ -139,7 +140,7 @@ FAULTS = (
     Fault("paired by number", "pairing", "modes are paired by their number", "other families' frequencies",
           ((convergence, "pair", by_number),), FAST),
     Fault("paired with the next", "pairing", "an index one too high", "next mode's frequency",
-          ((convergence, "pair", next_one),), PARK),
+          ((refined, "follow", next_one),), PARK),
     Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
           ((pairing, "_norm", lambda right: lambda a, momenta: 4.0 * right(a, momenta)),), PARK),
     _judging("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",

@@ -1,38 +1,40 @@
-"""Seeded faults on the blade that is verified: faults of core, and of the reader of the blade's file.
+"""Seeded faults on the blade that is verified: faults of core and of pairing.
 
-A fault of core counts as detected only if a code that shares nothing with core *fails* with it and did not without it; a fault
-of a reader only if the second reading of the file differs. A fault that changes no compared frequency of this blade by more
-than the target, or no property, is *without effect here*.
+A fault counts as detected only if a code that shares nothing with core *fails* with it and did not without it. Those of the
+paper's discretisation must let the paper's equations fail, which core's references do not contain. A fault that changes no
+compared frequency of this blade by more than the target is *without effect here*. Mistakes of readers are in ``own_reading``,
+those of extrapolation and uncertainty in ``own_uncertainty``.
 """
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 
 import numpy as np
 
-from ...core.blade import BEND_Y, BEND_Z, Blade
-from ...core.space.inertia import transformed
-from ...core.space.spatial import pose
 from ...references.protocol.description import Description, describe
 from ...references.protocol.process import Limits
-from ..diagnosis import blade_errors as errors
 from ..judge.results import Cell, Control
 from ..judge.verdict import unsigned
 from ..plan.blade import BladeSubject
+from ..plan.blade_columns import PAPER
 from ..plan.column import Column
 from ..plan.subject import Subject
 from ..plan.user_results import UserResults
 from ..run.executors import Serial
-from ..solve import properties
+from ..solve.works import papers_equations
 from ..verify import matrix
 from .seeding import Fault, seeded
 from .table import BY_NAME, FAST
 
-ELSEWHERE = ("whole end mass",)
-"""Faults of core that do not change its references: they concern the paper's discretisation."""
+OF_THE_PAPER = ("whole end mass",)
+"""Faults of the paper's discretisation, which is not that of core's references."""
 
-NAMES = tuple(name for name in FAST if name not in ELSEWHERE)
-"""Faults of core that are run on the blade that is verified."""
+NAMES = (*FAST, "twist across ±180°", "paired with the next", "paired by number")
+"""Faults of core and of pairing that are run on the blade that is verified."""
+
+ELEMENTS = 8
+"""Number of elements of the paper's equations, whose matrices are dense."""
 
 WITNESSES = 2
 """Number of codes that are asked about each fault."""
@@ -42,11 +44,17 @@ NO_WITNESS = "an independent code that agrees on this blade"
 
 @dataclass(frozen=True)
 class _Witnessed(BladeSubject):
-    """A blade with the columns of independent codes only."""
+    """A blade with the columns of independent codes only, or with that of the paper's equations."""
+
+    paper: bool = False
 
     def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
         """See ``Subject``."""
         columns = super().columns(codes, limits, added)
+        if self.paper:
+            head = next(column.head for column in columns if column.head.code == PAPER)
+            work = partial(papers_equations, head, self.blade, elements=ELEMENTS)
+            return [replace(column, work=work) for column in columns if column.head.code == PAPER]
         return [column for column in columns if column.head.role == "code" and column.head.shares == "nothing"]
 
 
@@ -65,22 +73,33 @@ def witnesses(cells: Iterable[Cell], subject: Subject) -> tuple[str, ...]:
     return tuple(code for code, passes in passing.items() if passes)[:WITNESSES]
 
 
+def chosen(names: Iterable[str]) -> tuple[str, ...]:
+    """All of ``NAMES`` if ``names`` has one that every run seeds; else those that are in both."""
+    names = tuple(names)
+    return NAMES if set(names) & set(FAST) else tuple(name for name in names if name in NAMES)
+
+
 def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse: bool = False) -> list[Control]:
-    """Run faults of core on a blade at its highest speed, against some codes; a task for any process."""
-    faults = [BY_NAME[name] for name in names]
-    fastest = _Witnessed(subject.case, replace(subject.variant, speeds=np.array([max(subject.points)])))
-    if not codes:
-        return [replace(_control(fault, fastest), needs=NO_WITNESS) for fault in faults]
-    described = describe(codes, [fastest.blade])
+    """Run faults on a blade at its highest speed, against some codes; a task for any process."""
+    variant = replace(subject.variant, speeds=np.array([max(subject.points)]))
+    described = describe(codes, [variant.blade])
+    right: dict[bool, tuple[Cell, ...]] = {}
+    out = []
+    for fault in (BY_NAME[name] for name in names):
+        paper = fault.name in OF_THE_PAPER
+        fastest = _Witnessed(subject.case, variant, paper)
+        if not codes and not paper:
+            out.append(replace(_control(fault, fastest), needs=NO_WITNESS))
+            continue
 
-    def solve() -> tuple[Cell, ...]:
-        return matrix.run([fastest], described, Serial(), reuse=reuse, parts=False).cells
+        def solve(of: BladeSubject = fastest) -> tuple[Cell, ...]:
+            return matrix.run([of], described, Serial(), reuse=reuse, parts=False).cells
 
-    right, out = solve(), []
-    for fault in faults:
+        if paper not in right:
+            right[paper] = solve()
         with seeded(fault.seams):
             wrong = solve()
-        out.append(judged(_control(fault, fastest), right, wrong))
+        out.append(judged(_control(fault, fastest), right[paper], wrong))
     return out
 
 
@@ -96,7 +115,8 @@ def judged(control: Control, right: Sequence[Cell], wrong: Sequence[Cell]) -> Co
     moved = [abs(b.reference / a.reference - 1.0) for a, b in pairs if a.reference and b.reference]
     target = min((c.target for c in wrong), default=0.0)
     if moved and max(moved) <= target:
-        return replace(control, without_effect=f"changes no compared frequency by more than {unsigned(max(moved))}")
+        size = f" by more than {unsigned(max(moved))}" if max(moved) else ""
+        return replace(control, without_effect=f"changes no compared frequency{size}")
     return control
 
 
@@ -106,95 +126,3 @@ def _key(cell: Cell) -> tuple[str, float, int, str, str]:
 
 def _control(fault: Fault, subject: BladeSubject) -> Control:
     return Control(fault.name, fault.area, fault.what, fault.size, subject.name, max(subject.points), ())
-
-
-@dataclass(frozen=True)
-class ReaderFault:
-    """A mistake of a reader: the blade that it returns instead of the right one.
-
-    Attributes:
-        name: short name.
-        what: one sentence.
-        alter: from the right blade to the wrong one.
-        part: the property that a second reading must state to detect it; empty if every second reading does.
-    """
-
-    name: str
-    what: str
-    alter: Callable[[Blade], Blade]
-    part: str = ""
-
-
-def _root_mass(blade: Blade) -> Blade:
-    mass = blade.mass.copy()
-    mass[0] *= 10.0
-    return replace(blade, mass=mass)
-
-
-def _shifted(blade: Blade) -> Blade:
-    """Sections about an axis that lies a hundredth of the length behind theirs."""
-    place = pose(np.eye(3), np.array([0.0, 0.01 * blade.length, 0.0]))
-    return replace(blade, mass=transformed(blade.mass, np.broadcast_to(place, (len(blade.mass), 4, 4))))
-
-
-def _shear_and_torsion(blade: Blade) -> Blade:
-    """Rows of BeamDyn's order (shear, shear, axial; bending, bending, torsion) taken as those of core."""
-    order = [1, 2, 0, 4, 5, 3]
-    return replace(blade, mass=blade.mass[:, order][:, :, order], stiffness=blade.stiffness[:, order][:, :, order])
-
-
-READER = (
-    ReaderFault("reader: columns exchanged", "flapwise and edgewise stiffness are exchanged", errors.exchanged_bending),
-    ReaderFault("reader: unit", "flapwise stiffness is taken in kN m²", errors.scaled_strain(1e-3, BEND_Y)),
-    ReaderFault("reader: mass multiplier", "a multiplier of the mass, of 1.05, is ignored", errors.scaled_mass(1 / 1.05)),
-    ReaderFault("reader: stiffness multiplier", "a multiplier of the edgewise stiffness, of 1.05, is ignored",
-                errors.scaled_strain(1 / 1.05, BEND_Z)),
-    ReaderFault("reader: twist's sign", "the twist has the opposite sign", lambda b: replace(b, twist=-b.twist)),
-    ReaderFault("reader: prebend's sign", "the prebend has the opposite sign", errors.mirrored_curve(-1.0, 1.0)),
-    ReaderFault("reader: offsets", "mass centres are given about another axis", _shifted),
-    ReaderFault("reader: precone's sign", "the precone has the opposite sign", lambda b: replace(b, precone=-b.precone),
-                "precone"),
-    ReaderFault("reader: hub radius", "the hub radius is dropped", lambda b: replace(b, hub_radius=0.0),
-                "hub radius"),
-    ReaderFault("reader: root mass", "the mass of the root station is ten times too large", _root_mass),
-    ReaderFault("reader: order", "shear and torsion are in the order of BeamDyn", _shear_and_torsion),
-    ReaderFault("reader: station", "the twist is that of the station before",
-                lambda b: replace(b, twist=np.concatenate([b.twist[:1], b.twist[:-1]]))),
-)  # fmt: skip
-"""Mistakes of readers and of sampling."""
-
-
-def reading(subject: BladeSubject) -> list[Control]:
-    """Run the mistakes of readers on the blade's file: the second reading must differ; empty for a blade without a file."""
-    file = subject.variant.file
-    if file is None:
-        return []
-    right, _ = properties.of_reading(subject.name, file, file.blade)
-    out = []
-    for fault in READER:
-        control = Control(fault.name, "reader", fault.what, "", subject.name, max(subject.points), ())
-        if absent := [row.reason for row in right if row.verdict == "not run"]:
-            out.append(replace(control, needs=absent[0]))
-            continue
-        try:
-            wrong = fault.alter(file.blade)
-        except ValueError as error:
-            out.append(replace(control, detected_by=(f"{subject.name}, refused: {error}",)))
-            continue
-        if _equal(wrong, file.blade):
-            out.append(replace(control, without_effect="changes no property of this blade"))
-            continue
-        if fault.part and fault.part not in {row.part for row in right}:
-            out.append(replace(control, needs=f"a file that states the {fault.part}"))
-            continue
-        rows, _ = properties.of_reading(subject.name, replace(file, blade=wrong), wrong)
-        known = {row.part for row in right if row.verdict == "fail"}
-        found = [row for row in rows if row.verdict == "fail" and row.part not in known]
-        out.append(
-            replace(control, detected_by=tuple(f"{subject.name}, second reading, {row.part}: fail" for row in found))
-        )
-    return out
-
-
-def _equal(a: Blade, b: Blade) -> bool:
-    return all(np.array_equal(value, vars(b)[name]) for name, value in vars(a).items())

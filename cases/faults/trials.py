@@ -24,6 +24,9 @@ THICK = Trial("park-cantilever", (10.0,), ("exact-beam",), lambda b: replace(b, 
 FAST = Trial("yoo-shin-chordwise/delta-0", (10.0,), ("exact-beam",))
 AXIAL = Trial("yoo-shin-chordwise/delta-0", (50.0,), ("exact-beam",))
 TWISTED = Trial("pretwisted-beam", (8.0,), ("assumed-modes",))
+CROSSED = replace(
+    TWISTED, codes=("scikit-fem",), modes=2, change=lambda b: replace(b, twist=b.twist - 0.5 * b.twist[-1])
+)
 TAPERED = Trial("tapered-beam", (8.0,), ("exact-beam",))
 TIP = Trial("tip-mass", (12.0,), ("exact-beam",))
 PITCHED = Trial("pretwisted-beam", (8.0,), ("scikit-fem",), lambda b: replace(b, pitch=0.5))

@@ -88,7 +88,7 @@ def same_code(
     return joined(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
 
 
-def papers_equations(head: Head, blade: Blade, core: References) -> Rows:
+def papers_equations(head: Head, blade: Blade, core: References, elements: int = ELEMENTS) -> Rows:
     """Rows of the paper's equations, at the highest speed only: a difference at lower speeds also appears there.
 
     Where core is not stable with the paper's elements, which have no geometric stiffness, there are half as many again;
@@ -98,9 +98,9 @@ def papers_equations(head: Head, blade: Blade, core: References) -> Rows:
         return [], []
     omega, reference = max(core, key=lambda pair: pair[0])
     meshes: list[tuple[int, Measure]] = [
-        (ELEMENTS, "body_fixed"),
-        (3 * ELEMENTS // 2, "body_fixed"),
-        (ELEMENTS, "corotational"),
+        (elements, "body_fixed"),
+        (3 * elements // 2, "body_fixed"),
+        (elements, "corotational"),
     ]
     for number, stiffness in meshes:
         run = (omega, number, reference.core.count)

@@ -13,7 +13,7 @@ from pathlib import Path
 from ...references.protocol import launch, registry, store
 from ...references.protocol.description import Description, describe
 from ...references.protocol.store import Store
-from ..faults import own, table
+from ..faults import own, own_reading, own_uncertainty, table
 from ..input.writing import writable
 from ..judge.results import Control, Planned, Run, Setting
 from ..plan import measurements, names, user_results
@@ -178,7 +178,7 @@ def _solved(
     serial = request.execution.threads
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
     users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
-    on_blades = tuple(name for name in plan.faults if users_blades and name in own.NAMES)
+    on_blades = own.chosen(plan.faults) if users_blades else ()
     elsewhere = tuple(name for name in plan.faults if name not in on_blades)
     shares = _shares(elsewhere, request.execution.workers or SHARES)
     tried: list[Future[list[Control]]] = []
@@ -210,7 +210,8 @@ def _solved(
             trials.submit(own.run, subject, own.witnesses(run.cells, subject), on_blades, users is not None)
             for subject in (users_blades if on_blades else [])
         ]
-        on_own += [trials.submit(own.reading, subject) for subject in (users_blades if on_blades else [])]
+        for others in (own_reading.run, own_uncertainty.run):
+            on_own += [trials.submit(others, subject) for subject in (users_blades if on_blades else [])]
         controls = {control.control: control for future in tried for control in future.result()}
     about = plan.about
     ordered = (*(c for future in on_own for c in future.result()), *(controls[name] for name in elsewhere))

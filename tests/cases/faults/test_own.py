@@ -7,13 +7,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from southwell.cases.faults import own
+from southwell.cases.faults import own, own_reading, table
+from southwell.cases.faults.seeding import seeded
 from southwell.cases.input import library
 from southwell.cases.judge.results import Cell, Control, Verdict
 from southwell.cases.plan.blade import BladeSubject, blades
 from southwell.cases.plan.request import Request
 from southwell.cases.plan.subjects import subjects
 from southwell.core.blade import uniform_blade
+from southwell.core.solve import mesh_modes
 
 from ...support import decks
 
@@ -94,7 +96,7 @@ def test_the_second_reading_detects_mistakes_of_the_reader(tmp_path: Path) -> No
     decks.openfast(tmp_path)
     (subject,) = subjects(Request((str(tmp_path / "elastodyn_main.dat"),), rpm="10"), lambda _: None)
     assert isinstance(subject, BladeSubject)
-    found = outcomes(own.reading(subject))
+    found = outcomes(own_reading.run(subject))
     assert "missed" not in found.values()
     assert "flapwise stiffness" in found["columns exchanged"]
     assert "mass per length" in found["mass multiplier"]
@@ -102,5 +104,33 @@ def test_the_second_reading_detects_mistakes_of_the_reader(tmp_path: Path) -> No
     assert found["prebend's sign"] == "changes no property of this blade"
 
 
+@pytest.mark.slow
+def test_the_paper_s_equations_detect_a_whole_end_mass_and_codes_a_pairing() -> None:
+    mass, pairing, twist = own.run(
+        users(), ("exact-beam",), ("whole end mass", "paired with the next", "twist across ±180°")
+    )
+    assert "paper's equations, literally" in mass.detected_by[0]
+    assert "exact-beam" in pairing.detected_by[0]
+    assert twist.without_effect == "changes no compared frequency"
+
+
+def test_a_twist_that_jumps_by_a_turn_is_detected_where_its_sign_changes() -> None:
+    fault = table.BY_NAME["twist across ±180°"]
+    crossing, above = (replace(BLADE, twist=np.array(twist)) for twist in ([0.2, -0.1], [0.2, 0.1]))
+    for blade, largest in ((crossing, 0.005), (above, 0.0)):
+        right = mesh_modes(blade, 10.0, 8, 2).frequencies
+        with seeded(fault.seams):
+            wrong = mesh_modes(blade, 10.0, 8, 2).frequencies
+        assert (abs(wrong / right - 1.0) >= largest).any()
+        assert (largest > 0) == (wrong != right).any()
+
+
+def test_every_fault_of_the_users_blade_follows_from_those_of_every_run() -> None:
+    assert own.chosen(table.FAST) == own.NAMES
+    assert own.chosen(("whole end mass",)) == own.NAMES
+    assert own.chosen(("paired by number", "density")) == ("paired by number",)
+    assert own.chosen(()) == ()
+
+
 def test_a_blade_without_a_file_has_no_reading() -> None:
-    assert own.reading(users()) == []
+    assert own_reading.run(users()) == []
