@@ -63,14 +63,18 @@ def is_users(subject: Subject) -> bool:
     return isinstance(subject, BladeSubject) and subject.users
 
 
-def witnesses(cells: Iterable[Cell], subject: Subject) -> tuple[str, ...]:
-    """Codes that share nothing with core and pass at the highest speed in every mode."""
+def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Description]) -> tuple[str, ...]:
+    """What to ask of ``codes`` that share nothing with core and pass at the highest speed in every mode.
+
+    A column that is no code, as that of a program which reads the deck itself, would not see a fault of a blade.
+    """
+    asked = {code.name: code.asked for code in codes if not code.failure}
     fastest = max(subject.points)
     passing: dict[str, bool] = {}
     for cell in cells:
         if cell.case == subject.name and cell.omega == fastest and cell.role == "code" and cell.shares == "nothing":
             passing[cell.code] = passing.get(cell.code, True) and cell.verdict == "pass" and bool(cell.version)
-    return tuple(code for code, passes in passing.items() if passes)[:WITNESSES]
+    return tuple(asked[code] for code, passes in passing.items() if passes and code in asked)[:WITNESSES]
 
 
 def chosen(names: Iterable[str]) -> tuple[str, ...]:

@@ -207,7 +207,7 @@ def _solved(
         if serial:  # a fault alters modules, which no other thread may use at that time
             try_faults()
         on_own = [
-            trials.submit(own.run, subject, own.witnesses(run.cells, subject), on_blades, users is not None)
+            trials.submit(own.run, subject, own.witnesses(run.cells, subject, plan.codes), on_blades, users is not None)
             for subject in (users_blades if on_blades else [])
         ]
         for others in (own_reading.run, own_uncertainty.run):

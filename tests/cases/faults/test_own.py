@@ -16,6 +16,7 @@ from southwell.cases.plan.request import Request
 from southwell.cases.plan.subjects import subjects
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import mesh_modes
+from southwell.references.protocol.description import Description
 
 from ...support import decks
 
@@ -60,7 +61,9 @@ def test_witnesses_share_nothing_and_pass_every_mode_at_the_highest_speed() -> N
     others = [replace(good, code="two", mode=2, verdict="fail"), replace(good, code="two")]
     derived = replace(good, code="three", shares="mechanical model")
     slow = replace(good, code="four", omega=0.0)
-    assert own.witnesses([good, *others, derived, slow], subject) == ("code",)
+    deck = replace(good, code="a column that reads the deck")
+    codes = [Description(asked=f"package.{name}:CODE", name=name) for name in ("code", "two", "three", "four")]
+    assert own.witnesses([deck, good, *others, derived, slow], subject, codes) == ("package.code:CODE",)
 
 
 def test_a_blade_of_the_package_is_not_the_users() -> None:
