@@ -3,7 +3,6 @@
 The text is taken from case files, adapters, docstrings and options.
 """
 
-import re
 from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
@@ -11,24 +10,29 @@ from pathlib import Path
 from pkgutil import walk_packages
 
 from ...cases.input import library
-from ...cases.judge.results import Run, Setting
+from ...cases.judge.results import Cell, Run, Setting
 from ...cases.plan import mechanism
 from ...cases.plan.blade import blades
 from ...cases.plan.subject import Subject
 from ...cases.store import results_file
 from ...references.protocol import registry as registry
 from ..cli import app, arguments
+from ..shared import summary
 from ..shared.markdown import plain, table
+from ..shared.paths import file_name
 from ..verification import code_pages
-from . import readme
+from . import notebook, readme
 
 Pages = dict[str, str]
 
 REPORT = "report.md"
 """Path of a run's report on the site; present only if there is a run."""
 
+NOTEBOOK = readme.ROOT / "docs" / "first-blade.ipynb"
+"""The notebook that is run for the site."""
+
 FLOORS = {
-    "core": "The language (blade, modes) and the in-house solver.",
+    "core": "The language (blade, modes) and Southwell's own solver.",
     "references": "Answers of other sources: one module for each foreign code, closed forms, printed tables.",
     "cases": "Which blade, which codes, which target; runs, compares, judges.",
     "reports": "Shows: Markdown, figures, command line.",
@@ -45,35 +49,44 @@ def pages(folder: Path) -> Pages:
     path = folder / arguments.RESULTS
     run = results_file.read(path) if path.exists() else Run(())
     return {
-        **cases(),
+        **cases(folder),
         **codes(run),
+        **notebook.page(NOTEBOOK),
         "results.md": readme.results_page(),
         "cli.md": command_line(),
         **api(),
         **report(folder),
+        **figures(folder),
+    }
+
+
+def figures(folder: Path) -> Pages:
+    """The figures of a run, by their paths; empty if there is none."""
+    return {
+        f"figures/{path.name}": path.read_text(encoding="utf-8") for path in sorted((folder / "figures").glob("*.svg"))
     }
 
 
 def report(folder: Path) -> Pages:
-    """The report of a run in ``folder`` and its figures; empty if there is none."""
+    """The report of a run in ``folder``; empty if there is none. Its figures are those of ``figures``."""
     path = folder / "report.md"
     if not path.exists():
         return {}
     text = path.read_text(encoding="utf-8")
-    figures = re.findall(r"!\[.*?\]\((figures/[\w.-]+\.svg)\)", text)
-    drawn = {name: (folder / name).read_text(encoding="utf-8") for name in figures}
-    return {REPORT: text.replace("<details>", '<details markdown="1">')} | drawn
+    return {REPORT: text.replace("<details>", '<details markdown="1">')}
 
 
-def cases() -> Pages:
-    """One page per case that comes with the package, and an index."""
+def cases(folder: Path | None = None) -> Pages:
+    """One page per case that comes with the package, with its results and the figures of a run in ``folder``, and an index."""
     present, absent = library.everything()
     subjects: dict[str, Sequence[Subject]] = {case.name: blades(case) for case in present.values()}
     subjects |= {name: [mechanism.subject(library.mechanism(name))] for name in library.mechanisms()}
     rows = [_row(*each) for each in subjects.items()]
     rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in absent.items()]
     head = "# Cases\n\nWhat `southwell verify` runs, from the files in `cases/data/`.\n\n"
-    pages = {f"cases/{name}.md": _case(name, own) for name, own in subjects.items()}
+    stored = results_file.read(readme.ROWS).cells
+    drawn = [path.name for path in sorted((folder / "figures").glob("*.svg"))] if folder else []
+    pages = {f"cases/{name}.md": _case(name, own, stored, drawn) for name, own in subjects.items()}
     return {"cases/index.md": f"{head}{table(rows)}\n"} | pages
 
 
@@ -84,7 +97,7 @@ def _row(name: str, subjects: Sequence[Subject]) -> dict[str, str]:
     return {"case": f"`{name}`", "what": what, "blades": count, "speeds": plain(first.facts["speeds"])}
 
 
-def _case(name: str, subjects: Sequence[Subject]) -> str:
+def _case(name: str, subjects: Sequence[Subject], stored: Sequence[Cell], drawn: Sequence[str]) -> str:
     first, *_ = facts = [subject.setting() for subject in subjects]
     path = f"mechanisms/{name}.toml" if subjects[0].blade is None else f"{name}.toml"
     parts = [
@@ -93,7 +106,7 @@ def _case(name: str, subjects: Sequence[Subject]) -> str:
         f"*Source:* {plain(first.source)}.",
         f"```console\nsouthwell verify {name}\n```",
         f"File: `cases/data/{path}`.",
-        *(_facts(s) for s in facts),
+        *(part for s in facts for part in (_facts(s), _results(s.case, stored), _pictures(s.case, drawn)) if part),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -101,6 +114,45 @@ def _case(name: str, subjects: Sequence[Subject]) -> str:
 def _facts(facts: Setting) -> str:
     rows = [{"": plain(k), facts.case: plain(v)} for k, v in facts.facts.items()]
     return f"## {plain(facts.case)}\n\n{table(rows)}"
+
+
+def _results(case: str, stored: Sequence[Cell]) -> str:
+    """The worst verdict and the largest difference of each code, from the stored rows; empty without any."""
+    cells = [c for c in stored if c.case == case]
+    rows = []
+    for code in summary.columns(cells, summary.broad):
+        group = [c for c in cells if summary.broad(c) == code]
+        verdict = summary.worst_verdict(group)
+        if verdict in ("not run", "not applicable"):
+            continue
+        largest = summary.worst(group)
+        rows.append(
+            {
+                "code": f"`{code}`" if code in registry.names() else plain(code),
+                "verdict": f"{summary.SYMBOL[verdict]} {verdict}",
+                "largest difference": summary.plus_minus(largest) if largest else "–",
+                "shares with Southwell's own solver": plain(group[0].shares),
+            }
+        )
+    return (
+        f"{table(rows)}\n\nAll modes and speeds of the last complete run; [how to read a verdict](../reading-a-verdict.md)."
+        if rows
+        else ""
+    )
+
+
+PICTURES = {
+    "campbell": "Frequencies over rotor speed: Southwell's own solver (lines) and the other codes (marks)",
+    "differences": "Differences from Southwell's own solver with their uncertainties, against the target",
+    "convergence": "Difference over the number of elements",
+}
+"""What the figures of a case show."""
+
+
+def _pictures(case: str, drawn: Sequence[str]) -> str:
+    """The figures of a case that a run has drawn."""
+    named = {f"{file_name(case)}-{kind}.svg": text for kind, text in PICTURES.items()}
+    return "\n\n".join(f"![{text}](../figures/{name})" for name, text in named.items() if name in drawn)
 
 
 def codes(run: Run) -> Pages:

@@ -11,7 +11,6 @@ import sys
 import tomllib
 from dataclasses import replace
 from html.parser import HTMLParser
-from importlib.util import find_spec
 from pathlib import Path
 
 import pytest
@@ -24,6 +23,7 @@ from southwell.references.protocol import registry
 from southwell.reports.cli import app as cli
 from southwell.reports.cli.arguments import RESULTS
 from southwell.reports.shared.summary import BAD
+from southwell.reports.site import notebook
 from southwell.reports.site import pages as site
 from southwell.reports.verification import report as matrix_report
 
@@ -73,7 +73,7 @@ def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
     made = site.cases() | site.api()
     named = leaves(configuration()["nav"])
     assert set(PAGES) <= set(named), "add it to the nav of mkdocs.yml"
-    there = {*PAGES, *made, "codes/index.md", "cli.md", "results.md"}
+    there = {*PAGES, *made, "codes/index.md", "cli.md", "results.md", "first-blade.md"}
     assert set(named) <= there
     assert len(named) == len(set(named))
 
@@ -88,6 +88,19 @@ def test_a_page_for_every_case_with_the_words_of_its_file() -> None:
         assert first.description.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;") in text
         assert all(f"## {phrase.case}" in text for phrase in (first, *rest))
     assert all(name in str(made["cases/index.md"]) for name in absent)
+
+
+def test_a_case_has_its_results_and_the_figures_of_a_run(tmp_path: Path) -> None:
+    (tmp_path / "figures").mkdir()
+    for name in ("tip-mass-campbell.svg", "tip-mass-differences.svg", "tip-mass-in-plane-straight-campbell.svg"):
+        (tmp_path / "figures" / name).write_text("<svg/>", encoding="utf-8")
+    page = site.cases(tmp_path)["cases/tip-mass.md"]
+    assert re.search(r"\| `exact-beam` +\| ✔ pass", page)
+    assert re.findall(r"!\[.+?\]\(\.\./(.*?)\)", page) == [
+        "figures/tip-mass-campbell.svg",
+        "figures/tip-mass-differences.svg",
+    ]
+    assert set(site.figures(tmp_path)) >= {"figures/tip-mass-campbell.svg"}
 
 
 def test_the_command_line_has_every_command_and_option() -> None:
@@ -154,27 +167,28 @@ def typed(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-def test_the_cells_of_the_notebook_run_in_their_order(tmp_path: Path) -> None:
-    """Without a kernel; the last line of each is shown by its HTML or its text."""
-    cells = json.loads((DOCS / "first-blade.ipynb").read_text(encoding="utf-8"))["cells"]
-    sources = ["".join(cell["source"]) for cell in cells if cell["cell_type"] == "code"]
+def test_the_notebook_is_a_page_with_what_its_cells_show() -> None:
+    path = DOCS / "first-blade.ipynb"
+    cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
     assert not any(cell.get("outputs") for cell in cells), "clear the outputs before committing"
-    shown = "print(f\"shown: {value._repr_html_()[:3] if hasattr(value, '_repr_html_') else type(value).__name__}\")"
-    lines = ["import matplotlib", 'matplotlib.use("agg")']
-    for source in sources:
-        *head, last = source.rstrip(";").splitlines()
-        lines += [*head, f"value = {last}" if "=" not in last.split("(")[0] else f"{last}; value = None", shown]
-    environment = {**os.environ, "OMP_NUM_THREADS": "1"}
-    done = subprocess.run(
-        [sys.executable, "-c", "\n".join(lines)], cwd=DOCS, capture_output=True, text=True, env=environment, timeout=300
-    )
-    assert done.returncode == 0, done.stderr
-    kinds = re.findall(r"^shown: (.*)$", done.stdout, re.M)
-    assert len(kinds) == len(sources)
-    interactive = find_spec("plotly") is not None  # then the Campbell diagram is no Axes
-    assert kinds.count("Axes") + interactive == 3
-    assert "<p>" in kinds
-    assert "flapwise 1 crosses 4P" in done.stdout
+    made = notebook.page(path)
+    page = made.pop("first-blade.md")
+    assert page.count("```python") == sum(cell["cell_type"] == "code" for cell in cells)
+    assert page.count("<table") >= 4
+    assert len(made) == 3
+    assert all(f"]({name})" in page and text.startswith("<?xml") for name, text in made.items())
+    assert "flapwise 1 crosses 4P" in page
+    assert "<style" not in page
+
+
+def test_a_cell_shows_its_last_value_and_what_it_prints(tmp_path: Path) -> None:
+    sources = ["import os\nhere = os.getcwd()\nprint('printed')\n1 + 1", "2 + 2;", "here == os.getcwd()"]
+    cells = [{"cell_type": "markdown", "source": ["# Title"]}]
+    cells += [{"cell_type": "code", "source": [source]} for source in sources]
+    path = tmp_path / "small.ipynb"
+    path.write_text(json.dumps({"cells": cells}), encoding="utf-8")
+    shown = re.findall(r"```text\n(.*?)\n```", notebook.page(path)["small.md"], re.S)
+    assert shown == ["printed", "2", "True"]
 
 
 # ------------------------------------------------------------------------------------------------------------ the site
@@ -266,6 +280,7 @@ def test_a_runs_report_is_on_the_site_with_its_figures(tmp_path: Path) -> None:
     written = matrix_report.write(samples.run(), tmp_path).read_text(encoding="utf-8")
     made = site.report(tmp_path)
     links = re.findall(r"!\[.*?\]\((.*?)\)", written)
-    assert set(made) == {site.REPORT, *links}
+    assert set(made) == {site.REPORT}
+    assert set(site.figures(tmp_path)) == set(links)
     assert len(links) == 4
     assert made[site.REPORT].count('<details markdown="1">') == written.count("<details>") > 0
