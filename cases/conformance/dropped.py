@@ -65,7 +65,7 @@ def effects(code: BladeAdapter) -> None:
         keep(
             near <= DROPPED * change,
             f"effects.{name} = {kept}: {known.STUBBY.name} at {known.FAST:g} rad/s, mode {_mode(found, here)}: differs by "
-            f"{near:.2%} from core with these effects; {name} changes the frequencies by up to {change:.2%}",
+            f"{near:.2%} from Southwell's own solver with these effects; {name} changes the frequencies by up to {change:.2%}",
         )
 
 

@@ -78,7 +78,7 @@ def without_reference(head: Head, omega: float, failure: Failure) -> Cell:
     """The cell of a column at a speed without a reference: it fails if core has no answer with all effects either."""
     if failure.kind == "no reference":
         return failed(head, omega, failure)
-    return empty(head, omega, "inconclusive", f"core with the same effects: {failure.reason}")
+    return empty(head, omega, "inconclusive", f"Southwell's own solver with the same effects: {failure.reason}")
 
 
 def row(

@@ -117,7 +117,7 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
     )
     base = reference.core.modes[i].estimate
     if base is None:
-        return replace(cell, verdict="not applicable", reason="core has no frequency to compare with")
+        return replace(cell, verdict="not applicable", reason="Southwell's own solver has no frequency to compare with")
     found = Validation(
         base.value,
         datum.value,

@@ -54,7 +54,9 @@ def _extra(reference: Reference, answer: Spectrum, refined_modes: Sequence[Refin
     top = max((answer.frequencies[m.partner.mode] for m in refined_modes if m.partner.mode is not None), default=0.0)
     extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in paired and f < top]
     return (
-        f"modes at {', '.join(extra)} rad/s do not match any core mode: spurious, or missed by core?" if extra else ""
+        f"modes at {', '.join(extra)} rad/s do not match any mode of Southwell's own solver: spurious, or missed by it?"
+        if extra
+        else ""
     )
 
 
@@ -107,7 +109,7 @@ def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, late: st
         verdict, reason = unless_ambiguous(known_effects(reference, i, cell.target), mode.partner)
         reason = join(reason, best.note if best.order is not None and best.order < declared_order else "", late)
     else:
-        reason = join(reason, best.note, base.note and f"core: {base.note}", late)
+        reason = join(reason, best.note, base.note and f"Southwell's own solver: {base.note}", late)
     return replace(
         cell,
         value=best.value,

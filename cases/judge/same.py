@@ -51,7 +51,14 @@ def same(
     if isinstance(answer, Failure):
         return [failed(head, omega, answer)], []
     if isinstance(core_answer, Failure):
-        return [empty(head, omega, "inconclusive", f"core with the same discretisation: {core_answer.reason}")], []
+        return [
+            empty(
+                head,
+                omega,
+                "inconclusive",
+                f"Southwell's own solver with the same discretisation: {core_answer.reason}",
+            )
+        ], []
     core = reference.core
     if reason := fault(core.spectrum, answer):
         return [failed(head, omega, Failure("nonsense", reason))], []

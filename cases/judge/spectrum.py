@@ -122,5 +122,8 @@ def fault(reference: Spectrum, other: Spectrum) -> str:
     highest = reference.frequencies.max(initial=0.0)
     more = len(other.values) > count
     if more and np.sum(other.frequencies <= highest * (1.0 + CLOSE)) > count:
-        return f"values: {len(other.values)} modes, and core has {count}: are there conjugates, or spurious ones?"
+        return (
+            f"values: {len(other.values)} modes, and Southwell's own solver has {count}: are there conjugates, or spurious "
+            "ones?"
+        )
     return ""

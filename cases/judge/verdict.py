@@ -77,7 +77,8 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
         names = ", ".join(f"no {e.name}" for e in effects)
         return (
             "inconclusive",
-            f"{names}: size unknown, because core with all effects has no similar mode; core without them agrees",
+            f"{names}: size unknown, because Southwell's own solver with all effects has no similar mode; without them it "
+            "agrees",
         )
     if abs(shift) <= target:
         return within(target)
@@ -86,7 +87,10 @@ def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judg
     }
     causes = [f"no {name}: {change}" for name, change in changes.items()]
     together = [f"together {percent(shift)}"] if len(causes) != 1 else []
-    return "known difference", f"{', '.join(causes + together)} (change of core's answer); core without them agrees"
+    return (
+        "known difference",
+        f"{', '.join(causes + together)} (change of the answer of Southwell's own solver, which agrees without them)",
+    )
 
 
 def bracketed(difference: float, uncertainty: float | None, target: float) -> Judgement:
@@ -103,7 +107,9 @@ def bracketed(difference: float, uncertainty: float | None, target: float) -> Ju
     if verdict in AGREES or uncertainty is None:
         return verdict, reason
     away = -difference / (1.0 + difference)
-    bound = f"estimate with a stated bound of {unsigned(uncertainty)}; core differs by {percent(away)},"
+    bound = (
+        f"estimate with a stated bound of {unsigned(uncertainty)}; Southwell's own solver differs by {percent(away)},"
+    )
     return (
         ("estimate", f"{bound} within the bound") if abs(away) <= uncertainty else ("fail", f"{bound} beyond the bound")
     )

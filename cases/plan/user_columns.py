@@ -55,7 +55,9 @@ def _rows(judge: Judge, head: Head, blade: Blade, compare: Compare, given: Seque
     cells = []
     for row, omega, reference in _at_their_speeds(blade, compare, given, core):
         if isinstance(reference, Failure):
-            cells.append(empty(head, omega, "not applicable", f"line {row.line}: core: {reference.reason}"))
+            cells.append(
+                empty(head, omega, "not applicable", f"line {row.line}: Southwell's own solver: {reference.reason}")
+            )
         elif (k := _place(row, reference)) is None:
             cells.append(_without_partner(head, omega, row, reference))
         else:
@@ -101,8 +103,8 @@ def _unless_misnamed(cell: Cell, row: Given, k: int, reference: Reference) -> Ce
     if cell.verdict != "fail" or not row.family or off[best] > cell.target or not mixed:
         return cell
     reason = (
-        f"line {row.line}: the frequency is not that of {core.names[k]} but of {core.names[best]}; core has a mixed mode, "
-        "whose name is a convention: give the mode's number among all modes"
+        f"line {row.line}: the frequency is not that of {core.names[k]} but of {core.names[best]}; Southwell's own solver has "
+        "a mixed mode, whose name is a convention: give the mode's number among all modes"
     )
     return replace(cell, verdict="inconclusive", reason=reason)
 

@@ -45,7 +45,10 @@ def refined_code(
     )
     first = [(omega, r, s.answers[0]) for (omega, r), s in zip(core, refinements, strict=True) if s.answers]
     if head.shares in ("nothing", "undeclared") and (copy := copied(blade, effects, first)):
-        why = f"equals core's answers with {copy[0]} elements to {copy[1]:.0e}: core's discretisation, not independent"
+        why = (
+            f"equals the answers of Southwell's own solver with {copy[0]} elements to {copy[1]:.0e}: its discretisation, not "
+            "independent"
+        )
         cells = [replace(c, shares="discretisation", reason=join(why, c.reason)) for c in cells]
     return cells, levels
 

@@ -27,7 +27,7 @@ def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
         f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}" for r in found if r.others
     )
     note = (
-        "± is the numerical uncertainty of the in-house solver; codes are those that share nothing with it and agree within "
+        "± is the numerical uncertainty of Southwell's own solver; codes are those that share nothing with it and agree within "
         f"0.1 %; the last column has their largest difference.{' Without agreement: ' + '; '.join(rest) + '.' if rest else ''}"
     )
     head = ("mode", units.speed, f"{units.frequency} ± u", "confirmed by", "difference")

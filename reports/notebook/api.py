@@ -246,7 +246,7 @@ def verify(
     out: str | Path | None = None,
     fresh: bool = False,
 ) -> VerifyResult:
-    """Solve a blade with every code, and compare and judge the results mode by mode against the in-house solver.
+    """Solve a blade with every code, and compare and judge the results mode by mode against Southwell's own solver.
 
     Args:
         blade: a blade, or the name or TOML file of a case, which defines its speeds.

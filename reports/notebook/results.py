@@ -165,7 +165,7 @@ class CampbellResult:
 
 @dataclass(frozen=True, repr=False)
 class VerifyResult:
-    """The results of other codes, compared with the in-house solver.
+    """The results of other codes, compared with Southwell's own solver.
 
     Attributes:
         run: all cells, refinements and origins; see ``cases.judge.results``.
@@ -178,7 +178,7 @@ class VerifyResult:
 
         The columns are ``case``, ``omega_rad_s``, ``mode``, ``quantity``, ``code``, ``value`` and ``reference`` (frequencies in
         rad/s), ``difference``, ``uncertainty``, ``target`` (relative), ``verdict``, ``shares`` (what the code has in common
-        with the in-house solver) and ``reason``.
+        with Southwell's own solver) and ``reason``.
         """
         rows = [
             {
@@ -201,7 +201,7 @@ class VerifyResult:
         return pd.DataFrame(rows)
 
     def evidence(self) -> pd.DataFrame:
-        """One row per code that answered: ``code``, ``shares`` (with the in-house solver), ``verdict`` (the worst),
+        """One row per code that answered: ``code``, ``shares`` (with Southwell's own solver), ``verdict`` (the worst),
         ``difference`` (the largest, relative), ``modes`` (compared)."""
         frame = self.to_frame()
         rows = []

@@ -114,8 +114,8 @@ def block(run: Run) -> str:
     none = unasked(run)
     return f"""{heat(run)}
 
-Each field shows the worst verdict of all modes and speeds, and the largest difference from core with that verdict (for a known
-difference: from Southwell's own solver with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
+Each field shows the worst verdict of all modes and speeds, and the largest difference from Southwell's own solver with that
+verdict (a known difference is from it with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
 
 ## {CASE} at {units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 

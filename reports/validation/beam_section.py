@@ -81,7 +81,7 @@ Source: {rotating_beams.data()["citation"]}.
 
 - Assumed, as one standard uncertainty of the inputs: {100 * _ASSUMED["stiffness"]:g} % of all stiffness (1 % of the thickness),
   {100 * _ASSUMED["mass"]:g} % of all mass. The clamp, the hub radius and the speed are treated as exact.
-- u_num is core's own uncertainty after refinement.
+- u_num is the uncertainty of Southwell's own solver after refinement.
 - u_D is {rotating_beams.data()["aluminium"]["measured"]:g} Hz for the aluminium beams: the scatter of their first
   frequency, which hardly depends on the sweep. For the composite beam, whose frequencies were read off a figure,
   {rotating_beams.data()["composite"]["measured"]:g} Hz is assumed."""

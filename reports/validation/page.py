@@ -94,7 +94,7 @@ def figure(model: Simulated, points: Sequence[Point]) -> Figure:
 
 _HEAD = f"""# Measured rotors
 
-A measurement is not a code. It does not confirm or contradict core; it shows how far the *model* is from the rotor. The
+A measurement is not a code. It does not confirm or contradict a solver; it shows how far the *model* is from the rotor. The
 comparison error E = S − D contains the model error and three uncertainties: of the numerical solution (u_num), of the inputs
 (u_input), and of the data (u_D). With u_val² = u_num² + u_input² + u_D², the model error is visible where |E| exceeds
 {COVERAGE:g} u_val (ASME V&V 20-2009, sec. 1-5). All values are in Hz."""

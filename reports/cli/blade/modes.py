@@ -1,4 +1,4 @@
-"""``southwell modes`` and ``southwell mechanism``: natural frequencies by the in-house solver."""
+"""``southwell modes`` and ``southwell mechanism``: natural frequencies by Southwell's own solver."""
 
 from collections.abc import Sequence
 

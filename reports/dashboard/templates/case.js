@@ -27,7 +27,7 @@ function differences() {
     const field = (name, code) => {
       const c = here.find((cell) => cell.code === code && (cell.name === name || !cell.mode));
       return c ? { verdict: c.verdict, text: c.text, label: `${name}, ${code}: ${DATA.verdicts[c.verdict].name} ${c.text}`,
-        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${c.unit}, core ${digits(c.ref, 8)} · target ${c.target}`,
+        tell: () => [make("strong", {}, c.mode ? `${name} × ${code}` : code), "  ", chip(c.verdict), c.text, c.f === null ? null : ` · ${digits(c.f, 8)} ${c.unit}, Southwell's own solver ${digits(c.ref, 8)} · target ${c.target}`,
           c.reason ? make("p", { class: "muted" }, c.reason) : null] } : null;
     };
     const answering = columns.filter((name) => !silent.includes(name));
@@ -85,7 +85,7 @@ function campbell() {
   const block = make("section", {}, make("h2", {}, "Campbell diagram"));
   if (!solved.length) { block.append(make("p", { class: "muted" }, "No code has an answer.")); return block; }
   draw();
-  block.append(controls, place, make("p", { class: "muted" }, "Lines: core, all effects. Points: the codes' answers; with bars: measured data. nP: n per revolution."));
+  block.append(controls, place, make("p", { class: "muted" }, "Lines: Southwell's own solver, all effects. Points: the codes' answers; with bars: measured data. nP: n per revolution."));
   return block;
 }
 
@@ -102,10 +102,10 @@ function convergence() {
       const points = levels.filter((v) => v[0] === code && core).map((v) => [v[3], Math.max(Math.abs(v[4] / core - 1), 1e-14)]).sort((a, b) => a[0] - b[0]);
       return { name: code, colour: colour(k), dash: dash(k), points, marks: true };
     }).filter((s) => s.points.length);
-    place.replaceChildren(chart(series, { x: "elements, or terms of a series", y: "difference from core, relative", logX: true, logY: true, label: "Convergence" }), legend(series));
+    place.replaceChildren(chart(series, { x: "elements, or terms of a series", y: "difference from Southwell's own solver", logX: true, logY: true, label: "Convergence" }), legend(series));
   }
   block.append(make("div", { class: "filters" }, chooser("mode", keys.map((key) => [key, named(split(key))]), draw, "convergence")), place,
-    make("p", { class: "muted" }, "Each refinement against core with the same effects, converged."));
+    make("p", { class: "muted" }, "Each refinement against Southwell's own solver with the same effects, converged."));
   draw(keys[0]);
   return block;
 }

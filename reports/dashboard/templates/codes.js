@@ -4,7 +4,7 @@
 const placed = (far) => make("td", { class: far ? `prose v${far[0]}` : null }, ...(far ? [figure(`${DATA.verdicts[far[0]].sign} ${far[1]}`), make("br"), ...broken(far[2])] : []));
 
 function codes() {
-  MAIN.append(make("h1", {}, "Codes"), make("p", { class: "muted" }, "Codes that share core's mechanical model or discretisation are one witness of the implementation, not several of the answer."),
+  MAIN.append(make("h1", {}, "Codes"), make("p", { class: "muted" }, "Codes that share the mechanical model of Southwell's own solver or discretisation are one witness of the implementation, not several of the answer."),
     table(["code", "what", "version", "shares with Southwell", "answers", "worst, relative to target", "largest known difference"], DATA.codes.map((code) => row(link(code.page, code.name),
       make("td", { class: "prose" }, code.title), code.version, code.shares, make("td", { class: "prose" }, code.counts.map(([k, n]) => `${n} ${DATA.verdicts[k].sign}`).join(", ")), placed(code.worst), placed(code.known))), { id: "codes" }),
     make("p", {}, ...DATA.verdicts.map((_, k) => chip(k))));

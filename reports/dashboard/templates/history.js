@@ -65,7 +65,7 @@ function between() {
     const other = versions(from, to);
     place.replaceChildren(make("p", { class: "muted" }, other ? `Versions: ${other}.` : "The same versions of everything."),
       all.length ? table(["who", "numbers moved", "largest move", "where", "answers gone", "answers new", "verdicts changed"], who(all), { id: "who" }) : make("p", {}, "No number moved, no verdict changed."),
-      all.length ? make("details", {}, make("summary", {}, all.length > MOST ? `The first ${MOST} of ${all.length} cells` : `All ${all.length} cells`), table(["case", "code", "mode, speed", "from", "to", "code moved", "core moved", "verdict"], all.slice(0, MOST).map((c) => row(c.cell[CASE], c.cell[CODE],
+      all.length ? make("details", {}, make("summary", {}, all.length > MOST ? `The first ${MOST} of ${all.length} cells` : `All ${all.length} cells`), table(["case", "code", "mode, speed", "from", "to", "code moved", "Southwell moved", "verdict"], all.slice(0, MOST).map((c) => row(c.cell[CASE], c.cell[CODE],
         placed(c.cell), digits(c.x, 12) || "absent", digits(c.y, 12) || "absent", c.moved ? relative(c.code) : "", c.shifted ? relative(c.core) : "",
         c.judged ? `${verdictOf(c.before)} → ${verdictOf(c.after)}` : "")), { id: "cells" })) : "");
   }
@@ -76,7 +76,7 @@ function between() {
 
 function steps() {
   const all = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
-  MAIN.append(make("h2", {}, "Steps"), make("p", { class: "muted" }, "A number steps where it moves by more than 1e-9, a code's own or core's: a frequency by a fraction of itself, a damping ratio by itself."),
+  MAIN.append(make("h2", {}, "Steps"), make("p", { class: "muted" }, "A number steps where it moves by more than 1e-9, a code's own or that of Southwell's own solver: a frequency by a fraction of itself, a damping ratio by itself."),
     all.length ? table(["at run", "who", "what", "largest change", "where", "versions that changed"], all.map((s) => row(named(s.run), s.who,
       s.numbers, s.change === null ? "from nothing" : relative(s.change), `${s.case}, mode ${where(s.mode, s.family, s.omega, s.what)}`,
       make("td", { class: "reason" }, s.run ? versions(s.run - 1, s.run) : ""))), { id: "steps" }) : make("p", { id: "steps" }, "None."));
@@ -106,7 +106,7 @@ function numbers() {
     for (const c of DATA.cells) {
       if (c[CASE] !== chosen.case || c[CODE] !== chosen.code || c[VALUES] === null) continue;
       const text = `mode ${placed(c)}`, name = c[WHAT] || "frequency";
-      out.push([`f ${text}`, `${name}: ${text}`, c[VALUES], c[ABSOLUTE] ? name : "frequency, rad/s", c[ABSOLUTE] ? 1 : null], [`d ${text}`, `difference: ${text}`, c[DIFFERENCES], c[ABSOLUTE] ? "difference from core" : "difference from core, relative", 1]);
+      out.push([`f ${text}`, `${name}: ${text}`, c[VALUES], c[ABSOLUTE] ? name : "frequency, rad/s", c[ABSOLUTE] ? 1 : null], [`d ${text}`, `difference: ${text}`, c[DIFFERENCES], c[ABSOLUTE] ? "difference from Southwell's own solver" : "difference from Southwell's own solver, relative", 1]);
     }
     return out.filter((n) => n[2] !== null);
   }

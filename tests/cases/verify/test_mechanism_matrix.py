@@ -142,7 +142,7 @@ def test_spurious_modes_are_a_failure() -> None:
         )
 
     (cell,) = reported(more)
-    assert (cell.verdict, "3 modes, and core has 2" in cell.reason) == ("fail", True)
+    assert (cell.verdict, "3 modes, and Southwell's own solver has 2" in cell.reason) == ("fail", True)
 
 
 @pytest.mark.parametrize(

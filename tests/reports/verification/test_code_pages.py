@@ -77,7 +77,9 @@ def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
 
 def test_a_page_says_version_and_refusals() -> None:
     text = code_pages.page(RUN, described("scikit-fem"))
-    assert text.startswith("# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with core: **nothing**.")
+    assert text.startswith(
+        "# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with Southwell's own solver: **nothing**."
+    )
     taken = {row[0]: row[1] for row in rows(text.partition("## Accepted properties")[2])}
     assert taken["twist"] == "taken"
     assert taken["shear flexibility"].startswith("refused: finite shear stiffness")
