@@ -12,7 +12,7 @@ from ...references.protocol.interface import CORE, Independence
 from ...references.protocol.process import Limits
 from ..input.schema import Case, Variant
 from ..judge.cells import Head
-from ..solve.published_tables import about, rows
+from ..solve.published_tables import about, about_deck, rows
 from ..solve.reference import felt
 from ..solve.refinement import Refining
 from ..solve.works import as_in_source, papers_equations, refined_code, same_code
@@ -44,7 +44,7 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
     head = Head(variant.name, PAPER, version("southwell"), "same discretisation", SAME, "everything")
     work = partial(papers_equations, head, blade)
     out.append(Column(PAPER, ALL_EFFECTS, head, work, due="highest speed"))
-    for table in about(blade, case.text.compare.tables):
+    for table in about(blade, case.text.compare.tables) + (about_deck(blade, variant.speeds) if variant.file else []):
         head = Head(variant.name, table.name, "", "table", target, "nothing")
         computed = source if source and table.name in source.tables else None
         work = partial(rows, head, table, blade, computed)

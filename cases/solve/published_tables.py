@@ -4,11 +4,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ...core.blade import Blade, uniform
 from ...core.effects import Effects
 from ...references.protocol.worker import Run
-from ...references.published import Datum, Series, label, load
+from ...references.published import Datum, Series, Table, label, load, names
 from ...references.sampling import sample
 from ..input.schema import Discretisation
 from ..judge.cells import Head
@@ -21,6 +22,8 @@ from ..judge.uncertainty import from_print
 from ..judge.verdict import unsigned
 from .core_solver import answers, as_given
 from .refinement import solve
+
+Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -49,22 +52,48 @@ class Printed:
         return [at_speed.get(name) for name in names]
 
 
-def about(blade: Blade, names: Sequence[str]) -> list[Printed]:
-    """The series of the tables ``names`` whose beam is this blade.
+SAME_BLADE = 1e-3
+"""Largest relative difference of length and mass from those of a published deck's blade."""
+
+
+def about(blade: Blade, tables: Sequence[str]) -> list[Printed]:
+    """The series of the ``tables`` whose beam is this blade.
 
     Raises:
         TableError: if a table does not exist.
     """
     return [
-        Printed(f"{label(name)}/{series.name}", label(name), series, *UNITS.get(table.unit) or 2 * (_rate(blade),))
-        for name in names
+        _printed(blade, name, table, series)
+        for name in tables
         for table in [load(name)]
         for series in table.series
-        if (series.blade == blade.name if series.blade else _alike(blade, series))
+        if (series.blade == blade.name if series.blade else not series.deck and _alike(blade, series))
     ]
 
 
-UNITS = {"rad/s": (1.0, 1.0), "rpm, Hz": (2 * np.pi, np.pi / 30)}
+def about_deck(blade: Blade, speeds: Array) -> list[Printed]:
+    """The series of all tables that other programs computed from the deck whose blade this is, by its length and mass.
+
+    Only those with numbers at one of the rotor ``speeds``, rad/s.
+    """
+    mass = float(np.trapezoid(blade.mass[:, 0, 0], blade.stations))
+    found = [
+        _printed(blade, name, table, series)
+        for name in names()
+        for table in [load(name)]
+        for series in table.series
+        if series.deck
+        and np.allclose([blade.length, mass], [series.deck.length, series.deck.mass], rtol=SAME_BLADE, atol=0.0)
+    ]
+    return [p for p in found if any(np.isclose(d.speed * p.speed, speeds, rtol=1e-9).any() for d in p.series.data)]
+
+
+def _printed(blade: Blade, name: str, table: Table, series: Series) -> Printed:
+    scale = UNITS.get(table.unit) or 2 * (_rate(blade),)
+    return Printed(f"{label(name)}/{series.name}", label(name), series, *scale)
+
+
+UNITS = {"rad/s": (1.0, 1.0), "rpm, rad/s": (1.0, np.pi / 30), "rpm, Hz": (2 * np.pi, np.pi / 30)}
 """Factors from frequencies and speeds of a table to rad/s; for dimensionless ones the beam's reference frequency."""
 
 

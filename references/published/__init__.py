@@ -22,7 +22,7 @@ COARSEST = 0.02
 
 Family = Literal["edgewise", "flapwise", "axial", "torsion"]
 Effect = Literal["prestretch", "coriolis", "rotary_inertia", "geometric"]
-Unit = Literal["rad/s", "rpm, Hz", "dimensionless"]
+Unit = Literal["rad/s", "rpm, rad/s", "rpm, Hz", "dimensionless"]
 
 
 class TableError(ValueError):
@@ -56,6 +56,13 @@ class Datum(Struct, frozen=True, forbid_unknown_fields=True):
         return 0.5 * 10.0 ** -len(self.printed.partition(".")[2])
 
 
+class DeckBlade(Struct, frozen=True, forbid_unknown_fields=True):
+    """The blade of a published deck, by which a user's file is recognised."""
+
+    length: Annotated[float, Meta(gt=0, description="arc length, m")]
+    mass: Annotated[float, Meta(gt=0, description="kg, without a mass at the tip")]
+
+
 class Series(Struct, frozen=True, forbid_unknown_fields=True):
     """Numbers of one author's computation for one beam."""
 
@@ -67,6 +74,7 @@ class Series(Struct, frozen=True, forbid_unknown_fields=True):
     data: Annotated[tuple[Datum, ...], Meta(min_length=1)]
     hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length; of a uniform beam")] = 0.0
     blade: Annotated[str, Meta(description="blade of the case, if it is not a uniform beam")] = ""
+    deck: Annotated[DeckBlade, Meta(description="blade of a deck, for which the numbers appear too")] | None = None
     target: (
         Annotated[float, Meta(gt=0, le=COARSEST, description="target of the numbers, if larger than the case's")] | None
     ) = None

@@ -28,7 +28,7 @@ DATA = [
     for datum in series.data
 ]
 EXACT = [found for found in DATA if not found[1].target]
-COARSE = [found for found in DATA if found[1].target]
+COARSE = [found for found in DATA if found[1].target and found[1].blade]  # those of decks: test_deck_tables
 SUSPECTS = [found for found in DATA if found[2].suspect]
 
 
