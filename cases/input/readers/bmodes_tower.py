@@ -2,7 +2,8 @@
 
 BModes' axes are x downwind, y to port, z up; here x = its z, y = its −y, z = its x. As in BModes, a tower is straight, equally
 stiff in both directions (``flp_stff``, ``flp_iner``), without offsets and without weight. ``cm_loc`` is the top mass's distance
-downwind, ``cm_axial`` that above the top; its moments are about axes through the top. Wires of stiffness k at the angle θ from
+downwind, ``cm_axial`` that above the top. Its moments are about the mass centre in BModes 3, whose files have ``cm_axial``, and
+about axes through the top before (source code of BModes 3.00, BldVib; manual of 1.03). Wires of stiffness k at the angle θ from
 the ground, n at a node, act like n/2 k cos²θ in every horizontal direction. Source: G. Bir, *User's Guide to BModes*,
 NREL/TP-500-39133, 2005.
 """
@@ -31,6 +32,9 @@ AXES = "BModes: x downwind, y to port, z up; here x = its z, y = its −y, z = i
 CLAMPED, FREE, LATERAL = 1, 2, 3
 """hub_conn: clamped; free in all directions; only axial motion and torsion are clamped."""
 
+JUMP = 1e-7
+"""Distance of two sections between which properties jump, relative to the height."""
+
 LATERAL_FREE = (1, 2, 4, 5)
 """Directions of our axes that hub_conn = 3 leaves to the springs of the base."""
 
@@ -58,6 +62,7 @@ def read(path: Path) -> tuple[Tower, Source]:
     found = table(sections, start, count, COLUMNS)
     found.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
     found.positive("flp_iner", zero=True)
+    jumps = _jumps(found["sec_loc"])
     by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
     p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
     draft = value(main, named, "draft") if "draft" in named else 0.0
@@ -85,6 +90,10 @@ def read(path: Path) -> tuple[Tower, Source]:
         "side-side stiffness and inertia are those of fore-aft, as in BModes",
         "properties vary linearly between sections; BModes uses their values in the middle of its elements",
     ]
+    if len(jumps):
+        notes.append(
+            f"properties jump at {', '.join(f'{height * part:g} m' for part in jumps)}: two sections at one height"
+        )
     if wires:
         heights = ", ".join(f"{h:g} m" for h, _ in wires)
         notes.append(f"guy wires at {heights}: their horizontal stiffness")
@@ -96,13 +105,21 @@ def read(path: Path) -> tuple[Tower, Source]:
     return Tower(beam, support), Source(NAME, (path, sections.path), AXES, tuple(notes), _unused(main, named))
 
 
+def _jumps(sec_loc: Array) -> Array:
+    """Places at which two sections follow each other; the second is moved up by ``JUMP``."""
+    second = np.flatnonzero(np.diff(sec_loc) == 0) + 1
+    sec_loc[second] += JUMP
+    return sec_loc[second]
+
+
 def _top(main: Text, named: Named) -> Array:
     """(6, 6) inertia at the tower's top."""
     names = ("tip_mass", "cm_loc", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
     m, x, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
-    z = value(main, named, "cm_axial") if "cm_axial" in named else 0.0
-    cross = m * sp.skew(np.array([x, 0.0, z]))
-    tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
+    central = "cm_axial" in named  # from BModes 3 on
+    arm = sp.skew(np.array([x, 0.0, value(main, named, "cm_axial") if central else 0.0]))
+    cross = m * arm
+    tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]]) - central * m * arm @ arm
     return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
 
 

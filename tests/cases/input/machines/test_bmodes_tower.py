@@ -85,6 +85,35 @@ def test_certification(tmp_path: Path, factor: float, more: str, printed: tuple[
     assert "without weight, as in BModes" in source.notes
 
 
+def test_moments_are_about_the_mass_centre_from_bmodes_3_on(tmp_path: Path) -> None:
+    path = write(tmp_path)
+    before = towers.read(path)[0].beam.tip_mass
+    path.write_text(path.read_text().replace("2960437. ixx_tip", "1.1 cm_axial\n2960437. ixx_tip"))
+    after = towers.read(path)[0].beam.tip_mass
+    # ours: up, to starboard, downwind
+    np.testing.assert_allclose(np.diagonal(before)[3:], [3264220.0, 3253223.0, 2960437.0])
+    arms = 78055.8 * np.array([3.3**2, 3.3**2 + 1.1**2, 1.1**2])
+    np.testing.assert_allclose(np.diagonal(after)[3:], np.diagonal(before)[3:] + arms)
+    assert after[1, 5] == pytest.approx(78055.8 * 1.1)
+
+
+def test_properties_may_jump(tmp_path: Path) -> None:
+    """Two sections at one height: a tower of two uniform parts has the frequencies of one with a steep change there."""
+    path = write(tmp_path)
+    file = tmp_path / "sections.dat"
+    head, rows = file.read_text().splitlines()[:5], file.read_text().splitlines()[5:]
+    lower, upper = rows[0].split(), rows[4].split()
+    found = []
+    for step in (0.0, 1e-4):
+        parts = [(0.0, lower), (0.4, lower), (0.4 + step, upper), (1.0, upper)]
+        text = "\n".join(" ".join([f"{at:g}", *row[1:]]) for at, row in parts)
+        file.write_text("\n".join(head).replace("10 n_secs", "4 n_secs") + "\n" + text + "\n")
+        tower, source = towers.read(path)
+        assert ("properties jump at 32.956" in " ".join(source.notes)) == (step == 0.0)
+        found.append(tower_modes(tower, 3).frequencies)
+    np.testing.assert_allclose(*found, rtol=2e-4)
+
+
 def matrix(name: str, values: np.ndarray) -> str:
     return f"6x6 matrix ({name}):\n" + "\n".join(" ".join(f"{v:g}" for v in row) for row in values) + "\n"
 
