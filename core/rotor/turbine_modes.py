@@ -29,6 +29,9 @@ Complex = NDArray[np.complex128]
 CONFIDENT = 0.5
 """Smallest part of the elastic energy that names a mode without a question mark."""
 
+LIKE_FIRST = 2.0
+"""Weight of the likeness to the mode at the first speed against that to the mode at the last one."""
+
 RIGID = 1e-6
 """Frequency, relative to the lowest of the blade, below which a mode is the rotor that turns freely."""
 
@@ -193,18 +196,31 @@ def _motion(made: Machine, a: Assembled, vectors: Complex) -> Motion:
 
 
 def tracked(at: Sequence[TurbineModes]) -> list[NDArray[np.intp]]:
-    """For each speed the (m,) indices of its modes, in the order of the modes at the first speed; see ``linked``."""
+    """For each speed the (m,) indices of its modes, in the order of the modes at the first speed.
+
+    A line continues with the mode that is most like the last one and like that at the first speed. Where two modes come close
+    and exchange their motions, the lines cross, and each keeps its motion and its name, however small the steps are.
+    """
     order = [np.arange(len(at[0].frequencies))]
     for before, after in pairwise(at):
-        order.append(linked(before, after)[order[-1]])
+        last = _assurance(before.shapes[order[-1]], after.shapes)
+        order.append(_paired(last + LIKE_FIRST * _assurance(at[0].shapes, after.shapes)))
     return order
 
 
 def linked(before: TurbineModes, after: TurbineModes) -> NDArray[np.intp]:
     """(m,) the mode of ``after`` that continues each mode of ``before``: the pairs with the largest sum of MACs."""
-    x, y = before.shapes, after.shapes
-    mac = np.abs(x.conj() @ y.T) ** 2 / np.outer((np.abs(x) ** 2).sum(1), (np.abs(y) ** 2).sum(1))
-    rows, columns = linear_sum_assignment(-mac)
-    out = np.empty(len(x), dtype=np.intp)
+    return _paired(_assurance(before.shapes, after.shapes))
+
+
+def _assurance(x: Complex, y: Complex) -> Array:
+    """(m, m) modal assurance criterion of shapes (m, k)."""
+    return np.abs(x.conj() @ y.T) ** 2 / np.outer((np.abs(x) ** 2).sum(1), (np.abs(y) ** 2).sum(1))
+
+
+def _paired(closeness: Array) -> NDArray[np.intp]:
+    """(m,) the column of each row, with the largest sum."""
+    rows, columns = linear_sum_assignment(-closeness)
+    out = np.empty(len(closeness), dtype=np.intp)
     out[rows] = columns
     return out

@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from southwell.cases.campbell.machine import MachineRequest, machine_diagram
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers.openfast import turbine
 from southwell.core import solve
+from southwell.core.blade import Blade, section_mass, section_stiffness
 from southwell.core.rotor.turbine import machine, rigid_rotor
 from southwell.core.rotor.turbine_modes import turbine_modes
 from southwell.core.space.inertia import transformed
@@ -155,6 +157,75 @@ def test_nrel_5mw_in_assumed_modes_has_the_frequencies_of_fast() -> None:
     assert 0.965 < free[0][1] / at["fore-aft 1"] < 0.97
     without, _ = frequencies(read, *files, gravity=0.0)
     np.testing.assert_allclose(free[1] - free[0], without[:2] - values[:2], rtol=0.06)
+
+
+OC3 = {
+    "1st tower fore-aft": (0.2785, 0.0049),
+    "1st tower side-side": (0.2773, 0.0046),
+    "1st flap collective": (0.6955, 0.0143),
+    "1st flap tilt": (0.6643, 0.0143),
+    "1st flap yaw": (0.6288, 0.0294),
+}
+"""Hz, median and standard deviation of the participants of OC3, phase I, load case 1.2, as the documentation of Ashes quotes
+figure 6 of J. Jonkman and others, *Offshore Code Comparison Collaboration within IEA Wind Annex XXIII*, 2010."""
+
+MONOPILE = np.array(
+    [
+        [0.0, 9517.14, 1037.13e9],
+        [29.9999, 9517.14, 1037.13e9],
+        [30.0, 4306.51, 474.49e9],
+        [37.76, 4030.44, 413.08e9],
+        [45.52, 3763.45, 357.83e9],
+        [53.28, 3505.52, 308.30e9],
+        [61.04, 3256.66, 264.08e9],
+        [68.8, 3016.86, 224.80e9],
+        [76.56, 2786.13, 190.06e9],
+        [84.32, 2564.46, 159.49e9],
+        [92.08, 2351.87, 132.77e9],
+        [99.84, 2148.34, 109.54e9],
+        [107.6, 1953.87, 89.49e9],
+    ]
+)
+"""Height above the mudline, m, mass, kg/m, and bending stiffness, N m², of OC3's monopile on rigid ground and its tower."""
+
+
+@NEEDS_NREL
+def test_oc3_monopile_is_in_the_middle_of_its_participants() -> None:
+    """Without weight, which the two tower modes tell: with it they are 2 % lower, as those of the NREL 5 MW on land."""
+    read = turbine.read(NREL).turbine
+    height, mass, EI = MONOPILE.T
+    rigid = np.full_like(EI, np.inf)
+    tower = Blade("monopile", height, section_stiffness(rigid, rigid, EI, EI), section_mass(mass), np.zeros_like(EI))
+    machines = (
+        replace(read, tower=tower, yaw=9.02832e9, drivetrain=replace(read.drivetrain, free=False), gravity=g)
+        for g in (0.0, 9.80665)
+    )
+    light, heavy = (
+        dict(zip(m.names, m.frequencies / (2 * np.pi), strict=True))
+        for m in (turbine_modes(machine(made), 0.0, 8) for made in machines)
+    )
+    for name in ("1st tower fore-aft", "1st tower side-side"):
+        assert light[name] == pytest.approx(OC3[name][0], rel=1.5e-3)
+        assert 0.975 < heavy[name] / light[name] < 0.985
+    for name, (median, deviation) in OC3.items():
+        assert abs(light[name] - median) < 1.5 * deviation, name
+
+
+@NEEDS_NREL
+def test_lines_do_not_depend_on_the_steps() -> None:
+    """Collective and yawing flap meet near rest; small steps would follow the exchange of their motions."""
+    read = turbine.read(NREL).turbine
+    ends = []
+    for count in (5, 41):
+        request = MachineRequest(tuple(np.linspace(0.0, 1.3, count)), modes=6)
+        lines = machine_diagram(read, request).lines
+        ends.append([(line.name, *line.frequencies[[0, -1]].round(6).tolist()) for line in lines])
+    assert ends[0] == ends[1]
+    assert [name for name, *_ in ends[0]][2:5] == [
+        "1st flap backward whirl",
+        "1st flap forward whirl",
+        "1st flap collective",
+    ]
 
 
 def test_the_rotor_is_carried_by_the_tower(tmp_path: Path) -> None:
