@@ -50,6 +50,9 @@ SYMMETRY_TOLERANCE = 1e-9
 ZERO_MOMENT = 1e-9
 """Smallest moment of inertia, as a fraction of the largest, that scales a matrix; smaller ones may be rounding of zero."""
 
+MIN_SIZE, MAX_SIZE = 1e-100, 1e100
+"""Smallest and largest stiffness, mass or moment of inertia, SI units: products of a few of them are finite and not zero."""
+
 STRAINS = ("axial", "shear y", "shear z", "torsion", "bending about y", "bending about z")
 
 GAUSS = 8
@@ -212,6 +215,12 @@ def _stiffness(blade: "Blade") -> None:
             "positive; check its sign and unit"
         )
     rigid_d = np.isinf(d[0])
+    extreme = ~rigid_d & ((d < MIN_SIZE) | (d > MAX_SIZE))
+    for k, i in np.argwhere(extreme)[:1]:
+        raise BladeError(
+            f"stiffness: diagonal {i} ({STRAINS[i]}) at station {k} ({blade.stations[k]:g} m) is {d[k, i]:g}: not between "
+            f"{MIN_SIZE:g} and {MAX_SIZE:g}: check the unit"
+        )
     coupled = rigid_entry & ~np.eye(6, dtype=bool) | (blade.stiffness != 0).any(0) & (rigid_d[:, None] ^ rigid_d)
     for i, j in np.argwhere(coupled)[:1]:
         raise BladeError(
@@ -252,6 +261,9 @@ def body_fault(matrix: Array, unit: str) -> str | None:
             f"diagonal {i} is {d[i]:g} {unit if i < 3 else ''}".rstrip()
             + ": it must be positive; check its sign and unit"
         )
+    if ((d > 0) & (d < MIN_SIZE) | (d > MAX_SIZE)).any():
+        i = int(np.argmax((d > 0) & (d < MIN_SIZE) | (d > MAX_SIZE)))
+        return f"diagonal {i} is {d[i]:g}: not between {MIN_SIZE:g} and {MAX_SIZE:g}: check the unit"
     if np.ptp(d[:3]) > MASS_TOLERANCE * m:
         return (
             f"{d[0]:g}, {d[1]:g}, {d[2]:g} {unit} along x, y, z: a body has the same mass in all directions; check "

@@ -48,6 +48,7 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     """
     scale = scaling(M, C, K)
     M, C, K = (scale[:, None] * a * scale for a in (M, C, K))
+    check_finite(M, C, K)
     try:
         root = np.linalg.cholesky(K)
     except np.linalg.LinAlgError:
@@ -60,6 +61,8 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     h = np.zeros((n + r, n + r), complex)  # i A⁻¹S in the basis (k⁻ᵀ x, Fᵀ y) with M = F Fᵀ
     h[:n, :n], h[:n, n:], h[n:, :n] = 1j * g, 1j * f, -1j * f.T
     requested = r if count is None else min(count, r)
+    if not requested:
+        return Eigen(np.zeros(0), np.zeros((n, 0), np.complex128))
     try:
         mu, z = scipy.linalg.eigh(h, subset_by_index=[n + r - requested, n + r - 1])
     except np.linalg.LinAlgError as error:
@@ -200,6 +203,6 @@ def _failed(error: Exception) -> EigenError:
 def unstable() -> UnstableError:
     """The error to raise if K is not positive definite."""
     return UnstableError(
-        "the stiffness about the steady state is not positive definite: the state is unstable in this discretisation; use more "
-        "elements, or check the stiffness"
+        "the stiffness about the steady state is not positive definite: the state is unstable in this discretisation: use more "
+        "elements, or check stiffness and loads"
     )

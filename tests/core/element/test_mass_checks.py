@@ -100,6 +100,7 @@ def test_an_unsymmetric_mass_is_refused() -> None:
     [
         ((2, 3, 5), 1e7, r"entries \(3, 5\) and \(5, 3\) at station 2 \(10 m\) are 1e\+07 and 0: it must be symmetric"),
         ((2, 4, 4), -1.0, r"diagonal 4 \(bending about y\) at station 2 \(10 m\) is -1: it must be positive"),
+        ((2, 4, 4), 1e-310, r"diagonal 4 \(bending about y\) at station 2 \(10 m\) is 1e-310: not between 1e-100 and"),
         ((2, 0, 0), np.inf, r"axial at station 0 \(0 m\) is finite but rigid at other stations"),
     ],
 )

@@ -14,6 +14,7 @@ from hypothesis import strategies as st
 
 from southwell import multibody as mb
 from southwell.core.mechanism.length import coordinate_units
+from southwell.core.spectrum.eigen import EigenError
 from southwell.references.matrices.rescaling import Units, in_units
 from southwell.tests.core.steady.test_periodic import REFUSED
 from southwell.tests.support import linkages, mechanisms
@@ -131,6 +132,18 @@ def test_a_stiffness_that_overflows_is_refused() -> None:
         (mb.Body("bob", mb.inertia(1.0, 1.0, (1.0, 0.0, 0.0))),), (swing,), coordinate_springs=(spring,)
     )
     with np.errstate(all="ignore"), pytest.raises(mb.MechanismError, match="not finite"):
+        mb.solve(mechanism)
+
+
+@pytest.mark.parametrize(("stiffness", "mass", "error"), [(5e-324, 1.0, EigenError), (1.0, 1e308, mb.MechanismError)])
+def test_extreme_numbers_are_refused_in_words(stiffness: float, mass: float, error: type[Exception]) -> None:
+    spring = mb.CoordinateSpring("swing.rz", stiffness)
+    mechanism = mb.Mechanism(
+        (mb.Body("bob", mb.inertia(mass, mass)),),
+        (mb.Joint("swing", "revolute", "ground", "bob"),),
+        coordinate_springs=(spring,),
+    )
+    with np.errstate(all="ignore"), pytest.raises(error, match="check"):
         mb.solve(mechanism)
 
 
