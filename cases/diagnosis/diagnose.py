@@ -11,8 +11,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.blade import Blade
-from . import spectra
+from . import own_elements, spectra
 from .arithmetic import arithmetic, difference
+from .hypotheses import ALL
 from .ranking import Cause, rank
 from .spectra import Change, Label, Problem
 from .split import ModeSplit, indication, split
@@ -95,6 +96,7 @@ def diagnose(
     *,
     by_shape: bool = False,
     uncertainty: float = UNCERTAINTY,
+    nodes: Sequence[float] | None = None,
 ) -> Diagnosis:
     """Explain the differences of a program's frequencies from the solver's.
 
@@ -105,9 +107,11 @@ def diagnose(
         modes: (M,) numbers among all modes of the blade, from 1, or names as ``flapwise 1``; by default 1 … M.
         by_shape: whether labels are of the solver's modes, to which the program's were paired by shape.
         uncertainty: relative uncertainty of the program's numbers; smaller differences are not explained.
+        nodes: arc lengths of the program's nodes from root to tip, m, if they are known, as from c2_def of an htc file: its
+            elements may have constant or linear properties.
 
     Raises:
-        ValueError: arrays of other shapes, or nothing to compare.
+        ValueError: arrays of other shapes, nothing to compare, or nodes that do not ascend.
     """
     omega, given = np.asarray(speeds, float), np.atleast_2d(np.asarray(frequencies, float))
     labels = tuple(modes) if modes is not None else tuple(range(1, given.shape[-1] + 1))
@@ -116,7 +120,8 @@ def diagnose(
     if not np.isfinite(given).any():
         raise ValueError("frequencies: none is finite")
     rows = _rows(omega, given)
-    problem = Problem(blade, tuple(omega[rows].tolist()), labels, by_shape)
+    kinds = ALL if nodes is None else (*ALL, *own_elements.hypotheses(nodes))
+    problem = Problem(blade, tuple(omega[rows].tolist()), labels, by_shape, {kind.name: kind for kind in kinds})
     return explain(problem, given[rows], uncertainty)
 
 
