@@ -1,11 +1,11 @@
-"""Files of towers that stand alone: BModes' main files of a tower, and Southwell's TOML files of a tower."""
+"""Files of towers: those of BModes and Southwell's TOML that contain nothing else, and files of turbines that contain one."""
 
 from pathlib import Path
 
 from ....core.rotor.tower import Tower
 from .. import files
 from ..errors import CaseError
-from ..readers import bmodes_tower
+from ..readers import bmodes_tower, hawc2_htc, hawc2_tower, windio_tower
 from ..readers.source import Source
 from ..readers.text import load
 from . import turbine_toml
@@ -22,10 +22,23 @@ def is_tower(path: Path) -> bool:
 
 
 def read(path: Path) -> tuple[Tower, Source]:
-    """Read a tower.
+    """Read a tower; of a HAWC2 htc, a windIO file or a turbine's TOML file its tower alone.
 
     Raises:
         CaseError: naming the file and field at fault.
     """
-    with files.reading(path, deck=path.suffix.lower() != ".toml"):
-        return turbine_toml.tower(path) if path.suffix.lower() == ".toml" else bmodes_tower.read(path)
+    suffix = path.suffix.lower()
+    with files.reading(path, deck=suffix not in (".toml", ".yaml", ".yml")):
+        if suffix == ".toml":
+            return turbine_toml.tower(path)
+        if suffix in (".yaml", ".yml"):
+            return windio_tower.read(path)
+        text = load(path)
+        if hawc2_htc.matches_format(text):
+            return hawc2_tower.read(path)
+        if not bmodes_tower.matches_format(text):
+            raise CaseError(
+                f"{path}: --tower: no tower of a format with one (BModes .bmi, HAWC2 .htc, windIO, Southwell's TOML); for "
+                "ElastoDyn give the tower's own file"
+            )
+        return bmodes_tower.read(path)

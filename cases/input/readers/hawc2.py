@@ -123,6 +123,16 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     )
 
 
+def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, Array]:
+    """Positions r (n,), m, stiffness and mass (n, 6, 6) of a structural file, about the axis of the body.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    found = _subset(text, subset)
+    return found["r"], _stiffness(found), _mass(found)
+
+
 def _between(r: Array, values: Array, at: Array) -> Array:
     """Sections (n, 6, 6) interpolated linearly from their r to the positions ``at``, as in ``core``."""
     k = np.clip(np.searchsorted(r, at, side="right") - 1, 0, len(r) - 2)

@@ -91,6 +91,15 @@ def blade_body(htc: Text, commands: Body) -> Body:
     Raises:
         CaseError: if there is none.
     """
+    return body_named(htc, commands, "blade")
+
+
+def body_named(htc: Text, commands: Body, beginning: str) -> Body:
+    """The commands of the first main_body with sections and a name that begins so.
+
+    Raises:
+        CaseError: if there is none.
+    """
     body: Body = []
     inside = False
     for command in commands:
@@ -100,11 +109,13 @@ def blade_body(htc: Text, commands: Body) -> Body:
         elif low[:2] == ["end", "main_body"] and inside:
             inside = False
             names = [c.words[1].lower() for c in body if c.words[0] == "name" and len(c.words) > 1]
-            if names and names[0].startswith("blade") and any(c.words[0] == "sec" for c in body):
+            if names and names[0].startswith(beginning) and any(c.words[0] == "sec" for c in body):
                 return body
         elif inside:
             body.append(command)
-    raise CaseError(f"{htc.path}: no main_body whose name begins with blade and that has c2_def: give the blade's htc")
+    raise CaseError(
+        f"{htc.path}: no main_body whose name begins with {beginning} and that has c2_def: give the {beginning}'s htc"
+    )
 
 
 def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
@@ -115,7 +126,7 @@ def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
     """
     named = {c.words[0]: c for c in body}
     if "filename" not in named or len(named["filename"].words) < 2:
-        raise CaseError(f"{htc.path}: timoschenko_input: no filename in the blade's main_body: add it")
+        raise CaseError(f"{htc.path}: timoschenko_input: no filename in the main_body: add it")
     file, chosen = named["filename"], named.get("set")
     numbers = [number(w) for w in chosen.words[1:]] if chosen else []
     if chosen and (len(numbers) != 2 or not all(n and n.is_integer() for n in numbers)):
@@ -132,7 +143,7 @@ UNUSED = {
     "damping_aniso": ("s", "modes are undamped"),
     "concentrated_mass": (
         "kg",
-        "concentrated masses on the blade are not supported: distribute them in the structural file's m",
+        "concentrated masses are not supported: distribute them in the structural file's m",
     ),
 }
 """Commands of a main_body that affect its modes and are not used: unit and reason."""

@@ -100,6 +100,14 @@ class Field:
                 raise CaseError(f"{row.at}: {count} numbers instead of {width}: one missing or too many? correct it")
         return np.array([row.numbers() for row in rows]).reshape(-1, width)
 
+    def parts(self) -> "list[Field]":
+        """The items of a list, each with keys of its own.
+
+        Raises:
+            CaseError: if it is not a list.
+        """
+        return [Field(self.text, f"{self.name}[{k}]", node) for k, node in enumerate(self._items())]
+
     def item(self, k: int) -> str:
         """Position of item ``k`` of a list, for a message."""
         return _at(self.text, self._items()[k], self.name)

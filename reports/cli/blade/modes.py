@@ -25,7 +25,8 @@ from ..arguments import Accuracy, Changes, Elements, NumberOfModes, given_speeds
 from ..errors import UsageError
 from ..mounting import Mounting
 from . import mechanism_text as answer
-from . import subjects, tower
+from . import subjects
+from . import tower as tower_text
 
 
 def modes(
@@ -41,6 +42,7 @@ def modes(
     json: bool = False,
     changes: Changes = (),
     against: str | None = None,
+    tower: bool = False,
     mounting: Mounting | None = None,
 ) -> int:
     """Compute the natural frequencies of a blade and name its modes.
@@ -72,9 +74,11 @@ def modes(
         repeated.
     against
         Another blade; prints the change of every frequency.
+    tower
+        Solve the tower in a file that also has a blade (HAWC2 htc, windIO, Southwell's TOML).
     """
-    if tower.is_tower(case):
-        tower.run(
+    if tower or tower_text.is_tower(case):
+        tower_text.run(
             case,
             modes,
             json,

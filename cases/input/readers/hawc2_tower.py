@@ -1,0 +1,54 @@
+"""The tower in a HAWC2 htc: its structural file and the height of its c2_def.
+
+HAWC2's ground axes are x to the side, y downwind, z down. Only sections without offsets are read: bending about x is fore-aft,
+about y side-side. Nacelle, shaft and rotor are other bodies, which are not read. Source: T. J. Larsen, A. M. Hansen,
+*How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 6.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from ....core.blade import Blade, BladeError, coupled
+from ....core.rotor.tower import Tower
+from ..errors import CaseError
+from . import hawc2, hawc2_htc
+from .hawc2_htc import LENGTHS
+from .source import Source
+from .text import load, number
+
+NAME = "HAWC2 tower"
+AXES = "HAWC2: y downwind, z down; here x = −(its z), z = its y"
+
+
+def read(path: Path) -> tuple[Tower, Source]:
+    """Read the tower of an htc file, clamped at its base, without weight and without what it carries.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    htc = load(path)
+    body = hawc2_htc.body_named(htc, hawc2_htc.commands(htc), "tower")
+    file, subset = hawc2_htc.properties(htc, body)
+    text = load(file)
+    r, stiffness, mass = hawc2.sections(text, subset)
+    points = np.array([[number(word) for word in c.words[2:6]] for c in body if c.words[0] == "sec"], float)
+    at = next(c.at for c in body if c.words[0] == "sec")
+    if points.ndim != 2 or points.shape[1] != 4 or not np.isfinite(points).all():
+        raise CaseError(f"{at}: sec: give number, x, y, z and twist of every section")
+    if np.abs(points[:, [0, 1, 3]]).max() > 1e-9 * np.abs(points[:, 2]).max():
+        raise CaseError(f"{at}: sec: the tower is not straight and vertical without twist, which is not supported")
+    height = abs(float(points[-1, 2] - points[0, 2]))
+    if r[0] != 0 or abs(r[-1] - height) > LENGTHS * height:
+        raise CaseError(f"{file}: r: from {r[0]:g} to {r[-1]:g} m: c2_def is {height:g} m high; correct one")
+    try:
+        beam = Blade(path.stem, r * (height / r[-1]), stiffness, mass, np.zeros(len(r)))
+    except BladeError as error:
+        raise CaseError(f"{file}: {error}") from error
+    if coupled(beam):
+        raise CaseError(f"{file}: offsets of centres or inclined principal axes: not supported for a tower")
+    notes = (
+        "clamped at the base, without weight",
+        "nacelle, shaft and rotor are other bodies of the htc, which are not read",
+    )
+    return Tower(beam), Source(NAME, (path, file), AXES, notes, hawc2_htc.left(body))
