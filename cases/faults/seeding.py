@@ -20,15 +20,18 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.mechanism.description import Mechanism
+from ...core.rotor.turbine import Turbine
 from ...references.protocol import registry
 from ...references.protocol.description import Description, describe
 from ..input import library
 from ..input.errors import CaseError
 from ..input.schema import Case, Variant
 from ..judge.results import Cell, Control, described
-from ..plan import mechanism
+from ..plan import mechanism, turbine
 from ..plan.blade import BladeSubject
 from ..plan.mechanism import MechanismSubject
+from ..plan.subject import Subject
+from ..plan.turbine import TurbineSubject
 from ..run.executors import Serial
 from ..verify import matrix
 
@@ -44,22 +47,27 @@ def _same(blade: Blade) -> Blade:
     return blade
 
 
+def _same_turbine(turbine: Turbine) -> Turbine:
+    return turbine
+
+
 def _same_mechanism(mechanism: Mechanism) -> Mechanism:
     return mechanism
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A small case: one blade or mechanism of the package, with few speeds and few codes.
+    """A small case: one blade, mechanism or turbine of the package, with few speeds and few codes.
 
     Attributes:
-        case: ``case`` or ``case/blade``, as on the command line, or a mechanism's name.
+        case: ``case`` or ``case/blade``, as on the command line, or the name of a mechanism or a turbine.
         speeds: rad/s.
         codes: names.
         change: function that makes the trial's blade from the package's.
         modes: number of modes compared; by default that of the case.
         motions: motions compared; by default those of the case.
         altered: function that makes the trial's mechanism from the package's.
+        altered_turbine: function that makes the trial's turbine from the package's.
         reuse: whether codes' earlier answers may be taken from the store. Faults act on what a code is sent and on what it
             returned, so they have the same effect on such answers.
     """
@@ -71,6 +79,7 @@ class Trial:
     modes: int | None = None
     motions: tuple[str, ...] = ()
     altered: Callable[[Mechanism], Mechanism] = _same_mechanism
+    altered_turbine: Callable[[Turbine], Turbine] = _same_turbine
     reuse: bool = False
 
 
@@ -132,7 +141,13 @@ def _only(thread: int, right: Callable[..., Any], wrong: Callable[..., Any]) -> 
 
 def cells(trial: Trial) -> tuple[Cell, ...]:
     """Cells of a trial run by the real matrix."""
-    subject = _mechanism(trial) if trial.case in library.mechanisms() else _blade(trial)
+    subject: Subject
+    if trial.case in library.mechanisms():
+        subject = _mechanism(trial)
+    elif trial.case in library.turbines():
+        subject = _turbine(trial)
+    else:
+        subject = _blade(trial)
     return matrix.run([subject], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
 
 
@@ -140,6 +155,12 @@ def _mechanism(trial: Trial) -> MechanismSubject:
     subject = mechanism.subject(library.mechanism(trial.case))
     described = replace(subject.described, mechanism=trial.altered(subject.described.mechanism))
     return replace(subject, described=described, points=trial.speeds)
+
+
+def _turbine(trial: Trial) -> TurbineSubject:
+    subject = turbine.of_case(library.turbine(trial.case))
+    modes = trial.modes or subject.modes
+    return replace(subject, turbine=trial.altered_turbine(subject.turbine), points=trial.speeds, modes=modes)
 
 
 def _blade(trial: Trial) -> BladeSubject:
@@ -162,7 +183,7 @@ def known(trial: Trial) -> tuple[Description, ...]:
 
 @lru_cache
 def _described(trial: Trial, _paths: tuple[str, ...]) -> tuple[Description, ...]:
-    blades = [] if trial.case in library.mechanisms() else [_variant(trial)[1].blade]
+    blades = [] if trial.case in (*library.mechanisms(), *library.turbines()) else [_variant(trial)[1].blade]
     return describe(trial.codes, blades)
 
 

@@ -10,8 +10,9 @@ from .core import FAULTS as CORE
 from .judging import FAULTS as JUDGING
 from .mechanisms import FAULTS as MECHANISMS
 from .seeding import Fault, execute
+from .turbines import FAULTS as TURBINES
 
-ALL: tuple[Fault, ...] = (*CORE, *ADAPTERS, *MECHANISMS, *JUDGING)
+ALL: tuple[Fault, ...] = (*CORE, *ADAPTERS, *MECHANISMS, *TURBINES, *JUDGING)
 
 BY_NAME = {fault.name: fault for fault in ALL}
 

@@ -6,11 +6,13 @@ from importlib.resources import as_file, files
 from pathlib import Path
 
 from .. import data
+from . import turbine_cases
 from .errors import CaseError, FilesMissingError, nearest
 from .mechanisms import Described, matches_format
 from .mechanisms import read as describe
 from .readers import southwell_toml
 from .schema import Case, read
+from .turbine_cases import TurbineCase
 
 
 def names() -> tuple[str, ...]:
@@ -51,6 +53,24 @@ def mechanism(name: str) -> Described:
     )
 
 
+def turbines() -> tuple[str, ...]:
+    """Names of the turbines of the package, sorted."""
+    folder = files(data) / "turbines"
+    return tuple(sorted(Path(f.name).stem for f in folder.iterdir() if f.name.endswith("-turbine.toml")))
+
+
+def turbine(name: str) -> TurbineCase:
+    """A turbine's case by its name, or by the path of its TOML file.
+
+    Raises:
+        CaseError: if its file is invalid.
+    """
+    if name in turbines():
+        with as_file(files(data) / "turbines") as folder:
+            return turbine_cases.read(folder / f"{name}.toml")
+    return turbine_cases.read(Path(name))
+
+
 def load(name: str) -> Case:
     """A case by its name, or by the path of its TOML file.
 
@@ -60,11 +80,13 @@ def load(name: str) -> Case:
     if name in names():
         with as_file(files(data)) as folder:
             return read(folder / f"{name}.toml")
+    if name in turbines():
+        raise CaseError(f"case: {name!r}: it is a turbine, not a blade: see `southwell verify {name}`")
     if name in mechanisms() or (name.endswith(".toml") and matches_format(Path(name))):
         raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
     if name.endswith(".toml"):
         return read(Path(name))
-    known = (*names(), *mechanisms())
+    known = (*names(), *mechanisms(), *turbines())
     raise CaseError(f"case: {name!r} is not known: {nearest(name, known)}; or give the path of a .toml file")
 
 
@@ -87,6 +109,10 @@ def select(name: str) -> Case:
 def is_blade_file(name: str) -> bool:
     """Whether a name is that of a blade file, not of a case."""
     path = Path(name)
-    if name in names() or name.partition("/")[0] in names() or not (path.suffix or os.path.isfile(path)):
+    if (
+        name in (*names(), *turbines())
+        or name.partition("/")[0] in names()
+        or not (path.suffix or os.path.isfile(path))
+    ):
         return False
     return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.matches_format(path))

@@ -7,13 +7,13 @@ from pathlib import Path
 from msgspec.structs import replace as replaced
 
 from ..input import changes as blade_changes
-from ..input import files, library, mechanisms, readers
+from ..input import library, mechanisms, readers, turbine_cases
 from ..input.changes import Change
 from ..input.default_case import default_case
 from ..input.errors import CaseError
 from ..input.library import is_blade_file
+from ..input.machines import turbines
 from ..input.readers import BladeFile, Mount
-from ..input.readers.openfast import turbine as turbine_reader
 from ..input.schema import Case
 from . import mechanism, turbine
 from .blade import blades
@@ -51,16 +51,17 @@ def _read(
         return _of_blade_file(subject, decks, request.mount)
     if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
         return mechanism.subject(library.mechanism(subject))
+    if subject in library.turbines() or (subject.endswith(".toml") and turbine_cases.matches_format(Path(subject))):
+        return turbine.of_case(library.turbine(subject))
     return library.select(subject)
 
 
 def _turbine(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> turbine.TurbineSubject | None:
     """The turbine in a file, at the given speeds or that of the file; None if the file is not that of a turbine."""
     path = Path(name)
-    with files.reading(path, deck=True):
-        if not turbine_reader.is_turbine(path):
-            return None
-        reading = turbine_reader.read(path, mount)
+    if not turbines.is_turbine(path):
+        return None
+    reading = turbines.read(path, mount)
     at, rpm = decks or ((reading.speed,), True)
     return turbine.subject(path, reading.turbine, reading.source, at, rpm)
 
@@ -84,7 +85,7 @@ def _changed(case: Case | Subject, edits: Sequence[Change]) -> Case | Subject:
     if not edits:
         return case
     if not isinstance(case, Case):
-        raise CaseError(f"--set {edits[0]}: {case.name} is a mechanism, not a blade: leave it out")
+        raise CaseError(f"--set {edits[0]}: {case.name} is not a blade: leave it out")
     what = "changed: " + ", ".join(str(change) for change in edits)
     text = replaced(
         case.text,
@@ -101,4 +102,6 @@ def _everything(note: Callable[[str], None]) -> tuple[Case | Subject, ...]:
     present, absent = library.everything()
     for name, why in absent.items():
         note(f"{name}: not run: {why}")
-    return (*present.values(), *(mechanism.subject(library.mechanism(name)) for name in library.mechanisms()))
+    machines = [mechanism.subject(library.mechanism(name)) for name in library.mechanisms()]
+    whole = [turbine.of_case(library.turbine(name)) for name in library.turbines()]
+    return (*present.values(), *machines, *whole)

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 
 import numpy as np
+from msgspec import UNSET
 from scipy.integrate import trapezoid
 
 from ...core.blade import Blade
@@ -15,6 +16,7 @@ from ...core.rotor.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
 from ..input.readers.source import Source
+from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
 from ..judge.results import Setting
 from ..judge.verdict import unsigned
@@ -140,6 +142,25 @@ class TurbineSubject:
     def error_budget(self) -> None:
         """See ``Subject``."""
         return None
+
+
+def of_case(case: TurbineCase) -> TurbineSubject:
+    """The subject of a turbine's case."""
+    text, compare = case.text, case.text.compare
+    return TurbineSubject(
+        text.name,
+        case.path,
+        case.reading.turbine,
+        case.speeds,
+        text.speeds.rpm is not UNSET,
+        case.reading.source,
+        title=text.title,
+        description=" ".join(text.description.split()),
+        modes=compare.modes,
+        target=compare.target,
+        groups=compare.groups,
+        time_limit=compare.time_limit,
+    )
 
 
 def subject(path: Path, turbine: Turbine, source: Source, points: Sequence[float], rpm: bool) -> TurbineSubject:

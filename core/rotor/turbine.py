@@ -10,6 +10,7 @@ Pᵀ(K P + Ω C P′ + Ω² M P″) do not depend on ψ. They couple to the towe
 vanishes: no gravity acts on the blades' own motions, only the rotor's weight on nacelle and tower.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -308,15 +309,22 @@ def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple
             part[:r, : n * r] = np.kron((T @ np.linalg.matrix_power(R, order))[k], np.eye(r))
             part[r:, n * r :] = turn
             P.append(part)
-        out[0] += P[0].T @ blade.M @ P[0]
-        out[1] += P[0].T @ (blade.C @ P[0] + 2.0 * omega * blade.M @ P[1])
-        out[2] += P[0].T @ (blade.K @ P[0] + omega * blade.C @ P[1] + omega**2 * blade.M @ P[2])
+        for total, part in zip(out, in_ground_frame(blade, omega, P), strict=True):
+            total += part
     spin = omega * RZ
     momentum = turbine.hub @ spin
     out[0][-6:, -6:] += turbine.hub
     # a symmetric body that spins about its axis: δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇, in the frame that does not spin
     out[1][-6:, -6:] += -sp.coadjoint(momentum)
     return out[0], out[1], out[2]
+
+
+def in_ground_frame(blade: Component, omega: float, P: Sequence[Array]) -> tuple[Array, Array, Array]:
+    """M, C, K of one blade over coordinates z with y = P(ψ) z; ``P``: P, P′ and P″ at an azimuth."""
+    M = P[0].T @ blade.M @ P[0]
+    C = P[0].T @ (blade.C @ P[0] + 2.0 * omega * blade.M @ P[1])
+    K = P[0].T @ (blade.K @ P[0] + omega * blade.C @ P[1] + omega**2 * blade.M @ P[2])
+    return M, C, K
 
 
 def turned_axes(psi: float) -> tuple[Array, Array, Array]:

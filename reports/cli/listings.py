@@ -8,7 +8,7 @@ from cyclopts import App
 
 from ...cases.input import library
 from ...cases.input.errors import nearest
-from ...cases.plan import mechanism
+from ...cases.plan import mechanism, turbine
 from ...cases.plan.settings import settings
 from ...references import isolated
 from ...references.isolated import ENVIRONMENTS
@@ -36,6 +36,9 @@ def cases() -> int:
     for name in library.mechanisms():
         about = mechanism.subject(library.mechanism(name)).setting()
         rows.append((name, about.title, "mechanism", about.facts["speeds"]))
+    for name in library.turbines():
+        about = turbine.of_case(library.turbine(name)).setting()
+        rows.append((name, about.title, "turbine", about.facts["speeds"]))
     _print(("case", "what", "blades", "speeds"), rows)
     return PASSED
 

@@ -87,7 +87,7 @@ def read(
         allowed.enter_context(files.outside_allowed(allow_outside))
         if root is not None:
             allowed.enter_context(files.root_allowed(Path(root)))
-        if str(path).partition("/")[0] not in (*library.names(), *library.mechanisms()):
+        if str(path).partition("/")[0] not in (*library.names(), *library.mechanisms(), *library.turbines()):
             return readers.reading(Path(path), mount).mounted(Path(path))
         if mount != Mount():
             raise CaseError(f"{path}: a case defines how its blade is mounted: leave out main, length and the like")

@@ -11,7 +11,7 @@ from pkgutil import walk_packages
 
 from ...cases.input import library
 from ...cases.judge.results import Cell, Run, Setting
-from ...cases.plan import mechanism
+from ...cases.plan import mechanism, turbine
 from ...cases.plan.blade import blades
 from ...cases.plan.subject import Subject
 from ...cases.store import results_file
@@ -81,6 +81,7 @@ def cases(folder: Path | None = None) -> Pages:
     present, absent = library.everything()
     subjects: dict[str, Sequence[Subject]] = {case.name: blades(case) for case in present.values()}
     subjects |= {name: [mechanism.subject(library.mechanism(name))] for name in library.mechanisms()}
+    subjects |= {name: [turbine.of_case(library.turbine(name))] for name in library.turbines()}
     rows = [_row(*each) for each in subjects.items()]
     rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in absent.items()]
     head = "# Cases\n\nWhat `southwell verify` runs, from the files in `cases/data/`.\n\n"
@@ -93,19 +94,24 @@ def cases(folder: Path | None = None) -> Pages:
 def _row(name: str, subjects: Sequence[Subject]) -> dict[str, str]:
     first = subjects[0].setting()
     what = f"[{plain(first.title)}]({name}.md)"
-    count = "a mechanism" if subjects[0].blade is None else str(len(subjects))
+    folder = _folder(name)
+    count = f"a {folder.rstrip('s/')}" if folder else str(len(subjects))
     return {"case": f"`{name}`", "what": what, "blades": count, "speeds": plain(first.facts["speeds"])}
+
+
+def _folder(name: str) -> str:
+    """Folder of a case's file in ``cases/data``, with a slash; empty for blades."""
+    return "mechanisms/" if name in library.mechanisms() else "turbines/" if name in library.turbines() else ""
 
 
 def _case(name: str, subjects: Sequence[Subject], stored: Sequence[Cell], drawn: Sequence[str]) -> str:
     first, *_ = facts = [subject.setting() for subject in subjects]
-    path = f"mechanisms/{name}.toml" if subjects[0].blade is None else f"{name}.toml"
     parts = [
         f"# {plain(first.title)}",
         plain(first.description),
         f"*Source:* {plain(first.source)}.",
         f"```console\nsouthwell verify {name}\n```",
-        f"File: `cases/data/{path}`.",
+        f"File: `cases/data/{_folder(name)}{name}.toml`.",
         *(part for s in facts for part in (_facts(s), _results(s.case, stored), _pictures(s.case, drawn)) if part),
     ]
     return "\n\n".join(parts) + "\n"

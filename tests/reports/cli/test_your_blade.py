@@ -107,7 +107,7 @@ def test_each_line_of_the_diagram_has_its_uncertainty_and_who_confirms_it(
         (f"verify {BLADE}", "--rpm: missing"),
         ("verify missing.dat --rpm 0", "missing.dat: no such file"),
         ("verify park-cantilever --rpm 5", "are for blade files"),
-        ("verify pitch-link --set mass=*2", "pitch-link is a mechanism"),
+        ("verify pitch-link --set mass=*2", "pitch-link is not a blade"),
         (f"modes {BLADE} --rpm 0 --set mass", "not NAME=*FACTOR"),
         (f"modes {BLADE} --rpm 0 --set GJ=*2", "GJ is rigid in this blade"),
         (f"modes {BLADE} --rpm 0 --against park-blade", "name one of them"),

@@ -81,7 +81,9 @@ def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
 def test_a_page_for_every_case_with_the_words_of_its_file() -> None:
     made = site.cases()
     known, absent = library.everything()
-    assert {f"cases/{name}.md" for name in {*known, *library.mechanisms()}} == set(made) - {"cases/index.md"}
+    assert {f"cases/{name}.md" for name in {*known, *library.mechanisms(), *library.turbines()}} == set(made) - {
+        "cases/index.md"
+    }
     for name, case in known.items():
         first, *rest = settings(case)
         text = re.sub(r"\\(.)", r"\1", str(made[f"cases/{name}.md"]))

@@ -91,7 +91,7 @@ def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.Monke
     _, absent = library.everything()
     ours = {v.name for name, case in all_.items() if name not in absent for v in case.variants}
     theirs = {v.name for name, case in all_.items() if name in absent for v in case.variants} | set(absent)
-    assert ours <= set(summary.cases(run)) <= ours | theirs | set(library.mechanisms())
+    assert ours <= set(summary.cases(run)) <= ours | theirs | {*library.mechanisms(), *library.turbines()}
     anywhere = set(BLADE_CODES) - set(readme.ISOLATED)
     assert {registry.code(name).name for name in anywhere} <= {c.code for c in run.cells}
 

@@ -1,0 +1,125 @@
+"""Faults in the assembly of a turbine by core, in its transformation to the ground's frame, and in adapters for turbines."""
+
+from collections.abc import Callable, Sequence
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+
+from ...core.modes import STATIONS
+from ...core.rotor import turbine as assembly
+from ...core.rotor.turbine import Turbine, shaft_pose
+from ...core.space import spatial as sp
+from ...core.space.inertia import about_centre, transformed
+from ...references.protocol.process import Failure
+from ...references.protocol.turbines import TurbineModes
+from ..solve import turbine as solving
+from .seeding import Fault, Seam, Trial
+
+HEIGHT, OVERHANG, TILT, CONE = 2.0, -7.0, np.radians(-15.0), np.radians(-10.0)
+
+
+def _exaggerated(turbine: Turbine) -> Turbine:
+    """Large angles, and a heavy nacelle far from the tower's top: the first modes depend on each."""
+    centre = sp.pose(np.eye(3), np.array([3.0, 1.0, 4.0]))
+    nacelle = np.ascontiguousarray(transformed(np.diag([4e5] * 3 + [8e6, 6e6, 6e6]), centre))
+    return replace(
+        turbine,
+        nacelle=nacelle,
+        shaft=shaft_pose(HEIGHT, OVERHANG, TILT),
+        blade=replace(turbine.blade, precone=CONE),
+        yaw=2e9,
+        drivetrain=replace(turbine.drivetrain, stiffness=2e8),
+    )
+
+
+TURBINE = Trial("nrel-5mw-turbine", (1.5,), ("exudyn-turbine",), altered_turbine=_exaggerated)
+
+
+def _assembled(alter: Callable[[Turbine], Turbine]) -> tuple[Seam, ...]:
+    """Core assembles a different turbine."""
+
+    def make(right: Any) -> Any:
+        return lambda turbine, *how: right(alter(turbine), *how)
+
+    return ((solving, "machine", make),)
+
+
+def _projected(alter: Callable[[Any], Any]) -> tuple[Seam, ...]:
+    return ((assembly, "in_ground_frame", alter),)
+
+
+def _frozen(right: Any) -> Any:
+    """The azimuth is a constant: its derivatives are missing."""
+    return lambda blade, omega, P: right(blade, omega, (P[0], 0.0 * P[1], 0.0 * P[2]))
+
+
+def _not_gyroscopic(right: Any) -> Any:
+    """Multi-blade coordinates without the term 2 Ω M P′."""
+
+    def wrong(blade: Any, omega: float, P: Sequence[Any]) -> Any:
+        M, C, K = right(blade, omega, P)
+        return M, C - 2.0 * omega * P[0].T @ blade.M @ P[1], K
+
+    return wrong
+
+
+def _about_top(turbine: Turbine) -> Turbine:
+    """Moments of inertia about the nacelle's mass centre are taken for those about the tower's top."""
+    nacelle = turbine.nacelle.copy()
+    nacelle[3:, 3:] = about_centre(nacelle)[2]
+    return replace(turbine, nacelle=nacelle)
+
+
+def _ratio(turbine: Turbine) -> Turbine:
+    drive = turbine.drivetrain
+    return replace(turbine, drivetrain=replace(drive, generator=drive.generator / drive.gear_ratio))
+
+
+def _answered(alter: Callable[[TurbineModes], TurbineModes]) -> tuple[Seam, ...]:
+    """The answer of a code is altered."""
+
+    def make(right: Any) -> Any:
+        def wrong(*args: Any) -> Any:
+            return [answer if isinstance(answer, Failure) else alter(answer) for answer in right(*args)]
+
+        return wrong
+
+    return ((solving, "turbine_answers", make),)
+
+
+def _at_rest(right: Any) -> Any:
+    def wrong(name: str, turbine: Turbine, runs: Sequence[Any], *how: Any) -> Any:
+        return right(name, turbine, [(0.0, elements, count) for _, elements, count in runs], *how)
+
+    return wrong
+
+
+def _backwards(modes: TurbineModes) -> TurbineModes:
+    """The order of the blades is reversed after the first."""
+    tower, first, *others = np.split(modes.shapes, modes.shapes.shape[1] // len(STATIONS), axis=1)
+    return replace(modes, shapes=np.concatenate([tower, first, *others[::-1]], axis=1))
+
+
+def _turbine(name: str, what: str, size: str, seams: tuple[Seam, ...], area: Any = "core") -> Fault:
+    return Fault(f"turbine: {name}", area, what, size, seams, TURBINE)
+
+
+FAULTS = (
+    _turbine("frozen azimuth", "the rotor is transformed at one azimuth, as if it did not turn", "tens of %",
+             _projected(_frozen)),
+    _turbine("transformation", "multi-blade coordinates lack their gyroscopic term", "tens of %",
+             _projected(_not_gyroscopic)),
+    _turbine("tilt", "the tilt of the shaft has the other sign", "percent",
+             _assembled(lambda t: replace(t, shaft=shaft_pose(HEIGHT, OVERHANG, -TILT)))),
+    _turbine("precone", "the blades are coned to the other side", "percent",
+             _assembled(lambda t: replace(t, blade=replace(t.blade, precone=-t.blade.precone)))),
+    _turbine("nacelle", "the nacelle's inertia about its mass centre is taken for that about the tower's top", "percent",
+             _assembled(_about_top)),
+    _turbine("gear ratio", "the generator's inertia is multiplied by the ratio instead of its square", "tens of %",
+             _assembled(_ratio)),
+    _turbine("blades backwards", "blades are numbered against the rotation", "whirls exchanged",
+             _answered(_backwards), "adapter"),
+    _turbine("rotor at rest", "the rotor's speed does not reach the code", "tens of %",
+             ((solving, "turbine_answers", _at_rest),), "adapter"),
+)  # fmt: skip
