@@ -63,7 +63,7 @@ def _turbine(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mou
         return None
     reading = turbines.read(path, mount)
     at, rpm = decks or ((reading.speed,), True)
-    return turbine.subject(path, reading.turbine, reading.source, at, rpm)
+    return turbine.subject(path, reading.turbine, reading.source, at, rpm, mount)
 
 
 def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case:

@@ -2,7 +2,7 @@
 
 import re
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import partial
 from pathlib import Path
 
@@ -15,11 +15,14 @@ from ...core.effects import ALL_EFFECTS
 from ...core.rotor.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
-from ..input.readers.source import Source
+from ..input import readers
+from ..input.readers.source import Mount, Source
 from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
 from ..judge.results import Setting
 from ..judge.verdict import unsigned
+from ..reading.machine import read_again
+from ..solve.properties import of_reading
 from ..solve.reference import References
 from ..solve.refinement import Refining
 from ..solve.turbine import MOTION, references, refined_code
@@ -48,6 +51,7 @@ class TurbineSubject:
         target: largest relative difference.
         groups: number of independent groups that must confirm it.
         time_limit: of one solution by a foreign code, s.
+        mount: what the user states besides the file.
     """
 
     name: str
@@ -62,6 +66,7 @@ class TurbineSubject:
     target: float = TARGET
     groups: int = 1
     time_limit: float = 300.0
+    mount: Mount = field(default_factory=Mount)
 
     @property
     def cells(self) -> int:
@@ -136,8 +141,14 @@ class TurbineSubject:
         return partial(references, self.turbine, self.points, self.modes)
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
-        """See ``Subject``."""
-        return NOT_CHECKED
+        """See ``Subject``; a second reading of OpenFAST's files."""
+        path = Path(self.path)
+        if path.suffix.lower() != ".fst":
+            return NOT_CHECKED
+        blade = readers.reading(path, self.mount)
+        file = readers.BladeFile(path, blade.blade, blade.source, self.mount)
+        of_blade, _ = of_reading(self.name, file, blade.blade)
+        return PropertyChecks((*read_again(self.name, self.turbine, path), *of_blade))
 
     def error_budget(self) -> None:
         """See ``Subject``."""
@@ -163,10 +174,12 @@ def of_case(case: TurbineCase) -> TurbineSubject:
     )
 
 
-def subject(path: Path, turbine: Turbine, source: Source, points: Sequence[float], rpm: bool) -> TurbineSubject:
+def subject(
+    path: Path, turbine: Turbine, source: Source, points: Sequence[float], rpm: bool, mount: Mount | None = None
+) -> TurbineSubject:
     """A turbine that is given only by its file, at these speeds, rad/s."""
     name = re.sub(r"[^a-z0-9.-]+", "-", path.stem.lower()).strip("-.") or "turbine"
-    return TurbineSubject(name, str(path), turbine, tuple(points), rpm, source)
+    return TurbineSubject(name, str(path), turbine, tuple(points), rpm, source, mount=mount or Mount())
 
 
 def _mass(beam: Blade) -> float:
