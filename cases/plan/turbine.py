@@ -21,11 +21,11 @@ from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
 from ..judge.results import Setting
 from ..judge.verdict import unsigned
-from ..reading.machine import read_again
 from ..solve.properties import of_reading
 from ..solve.reference import References
 from ..solve.refinement import Refining
 from ..solve.turbine import MOTION, references, refined_code
+from ..solve.turbine_reading import read_again
 from .column import Column, absent_work, failing_work, not_installed
 from .settings import NOT_USED
 from .subject import NOT_CHECKED, PropertyChecks

@@ -8,7 +8,7 @@ from ...core.blade import BEND_Y, BEND_Z
 from ...core.rotor.turbine import Turbine
 from ...references.readers import NotReadError, openfast_turbine
 from ..judge.results import PropertyCheck
-from .comparison import TARGET
+from ..reading.comparison import TARGET
 
 SMALL = 1e-9
 """Relative to the largest quantity of the same unit: below it a difference is rounding."""

@@ -9,7 +9,7 @@ import pytest
 from southwell.cases.input.readers.openfast import elastodyn_tower
 from southwell.cases.input.readers.openfast import turbine as reader
 from southwell.cases.plan import turbine as plan
-from southwell.cases.reading.machine import read_again
+from southwell.cases.solve.turbine_reading import read_again
 from southwell.core.blade import Blade
 from southwell.core.rotor.turbine import shaft_pose
 from southwell.references.protocol.process import Limits
