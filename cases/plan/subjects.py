@@ -32,7 +32,7 @@ def subjects(request: Request, note: Callable[[str], None]) -> list[Subject]:
     asked = request.subjects
     unique = [s for k, s in enumerate(asked) if not isinstance(s, str) or s not in asked[:k]] or _everything(note)
     chosen = [_changed(_read(subject, decks, request), edits) for subject in unique]
-    if not any(isinstance(s, str) and is_blade_file(s) for s in unique) and (decks or request.mount != Mount()):
+    if not any(isinstance(s, str) and _deck(s) for s in unique) and (decks or request.mount != Mount()):
         raise CaseError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
         )
@@ -45,7 +45,7 @@ def _read(
     """A case of blades or a mechanism, by name or file; or the default case of a turbine's or a blade's file."""
     if not isinstance(subject, str):
         return subject
-    if is_blade_file(subject):
+    if _deck(subject):
         if not request.blade_only and (whole := _turbine(subject, decks, request.mount)):
             return whole
         return _of_blade_file(subject, decks, request.mount)
@@ -54,6 +54,11 @@ def _read(
     if subject in library.turbines() or (subject.endswith(".toml") and turbine_cases.matches_format(Path(subject))):
         return turbine.of_case(library.turbine(subject))
     return library.select(subject)
+
+
+def _deck(name: str) -> bool:
+    """Whether a name is the file of a blade or a turbine, which defines no speeds to compare at."""
+    return is_blade_file(name) or turbines.is_turbine(Path(name))
 
 
 def _turbine(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> turbine.TurbineSubject | None:

@@ -8,9 +8,13 @@ import pytest
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.machines import towers, turbines
 from southwell.cases.input.readers.openfast import turbine as openfast
+from southwell.cases.plan.request import Request
+from southwell.cases.plan.subjects import subjects
+from southwell.cases.plan.turbine import TurbineSubject
 from southwell.core.rotor.tower import tower_modes
 from southwell.core.rotor.turbine import machine
 from southwell.core.rotor.turbine_modes import turbine_modes
+from southwell.references.exudyn.turbine import ExudynTurbine
 from southwell.tests.support.turbine_decks import deck
 
 TURBINE = """
@@ -79,6 +83,16 @@ def test_a_turbine_in_toml_is_that_of_the_deck(tmp_path: Path) -> None:
     assert both[0].names == both[1].names
     assert "AdjBlMs" in " ".join(found.source.notes)
     assert "BldFl1Sh" not in str(found.source.unused)
+
+
+def test_a_turbine_in_toml_can_be_verified(tmp_path: Path) -> None:
+    deck(tmp_path)
+    path = write(tmp_path, TURBINE)
+    (subject,) = subjects(Request((str(path),), rpm="0,10"), lambda _: None)
+    assert isinstance(subject, TurbineSubject)
+    np.testing.assert_allclose(subject.points, [0.0, np.pi / 3])
+    soft = write(tmp_path, TURBINE + "\n[[tower.support.springs]]\nheight = 9.0\ndownwind = 1e5\nport = 0.0\n")
+    assert ExudynTurbine().unsupported_turbine(turbines.read(soft).turbine) == "the tower is held by springs"
 
 
 def test_a_free_generator_and_springs_under_the_tower(tmp_path: Path) -> None:
