@@ -94,7 +94,7 @@ def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
 
 
 def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, late: str, declared_order: float = 0.0) -> Cell:
-    """The cell with numbers and verdict; a pass states an order of convergence below the declared one."""
+    """The cell with numbers and verdict; a pass states scatter, and an order of convergence below the declared one."""
     base, best = reference.core.modes[i].estimate, mode.estimate
     if base is None or best is None:
         return cell
@@ -107,7 +107,7 @@ def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, late: st
         verdict, reason = judge(difference, uncertainty, cell.target)
     if verdict in AGREES:
         verdict, reason = unless_ambiguous(known_effects(reference, i, cell.target), mode.partner)
-        reason = join(reason, best.note if best.order is not None and best.order < declared_order else "", late)
+        reason = join(reason, best.note if best.order is None or best.order < declared_order else "", late)
     else:
         reason = join(reason, best.note, base.note and f"Southwell's own solver: {base.note}", late)
     return replace(

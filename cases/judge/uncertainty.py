@@ -75,6 +75,7 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
     scattered = Estimate(float(f[-1]), _at_least(WARY * spread))
     if spread <= NOISE:
         return scattered
+    scattered = replace(scattered, note=f"refinements scatter by {spread:.1g} instead of converging with order {order}")
     listed = f"{f[0]:.9g}, {f[1]:.9g}, {f[2]:.9g} rad/s"
     if (f[1] - f[0]) * (f[2] - f[1]) <= 0:
         return scattered if spread <= QUIET else Estimate(float(f[-1]), None, note=f"not monotone: {listed}")

@@ -16,12 +16,13 @@ from ...core.effects import ALL_EFFECTS
 from ...core.participation import MIXED
 from ...references.protocol.process import Failure
 from ..input.schema import Compare, Variant
-from ..judge.cells import Head, Rows, empty
+from ..judge.cells import Head, Rows, empty, join
 from ..judge.measured import Datum, measured
 from ..judge.printed import printed
 from ..judge.reference import Reference
 from ..judge.results import Cell
 from ..judge.uncertainty import Estimate
+from ..solve.copies import GIVEN_BACK, given_back
 from ..solve.reference import references
 from ..solve.works import References
 from .column import Column
@@ -41,7 +42,7 @@ def columns(variant: Variant, user_results: Sequence[UserResults], compare: Comp
             work = partial(_rows, _of_a_rig, head, variant.blade, compare, mine)
         else:
             head = Head(variant.name, one.name, f"from {file}", "code", compare.target, "nothing")
-            work = partial(_rows, _of_a_program, head, variant.blade, compare, mine)
+            work = partial(_rows_of_a_program, head, variant.blade, compare, mine)
         out.append(Column(one.name, ALL_EFFECTS, head, work, due="somewhere"))
     return out
 
@@ -63,6 +64,15 @@ def _rows(judge: Judge, head: Head, blade: Blade, compare: Compare, given: Seque
         else:
             cells.append(judge(head, omega, k, reference, row))
     return cells, []
+
+
+def _rows_of_a_program(head: Head, blade: Blade, compare: Compare, given: Sequence[Given], core: References) -> Rows:
+    """The cells of a program; Southwell's own output, given back, is no program that shares nothing with it."""
+    cells, levels = _rows(_of_a_program, head, blade, compare, given, core)
+    if given_back(blade, [(row.omega, row.value.value, row.value.uncertainty or 0.0) for row in given]):
+        why = f"equals what southwell modes prints to {GIVEN_BACK:.0e}: Southwell's own output, not independent"
+        cells = [replace(cell, shares="everything", reason=join(why, cell.reason)) for cell in cells]
+    return cells, levels
 
 
 def _of_a_program(head: Head, omega: float, k: int, reference: Reference, row: Given) -> Cell:

@@ -1,9 +1,11 @@
 """Recognises core's own discretisation in the answers of a code that declares that it shares nothing with core.
 
 Two independent programs with as many elements differ by their discretisation errors. Answers that equal core's to rounding,
-where core itself is not converged, come from core's equations, whatever the code declares.
+where core itself is not converged, come from core's equations, whatever the code declares. So do numbers in a file that equal
+those of ``southwell modes`` in more digits than are certain.
 """
 
+import warnings
 from collections.abc import Sequence
 from typing import get_args
 
@@ -14,6 +16,9 @@ from ...core.effects import Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
+from ...core.solve import sweep
+from ...core.spectrum.refinement import AccuracyWarning
+from ..input.errors import NO_STATE
 from ..judge.reference import Reference
 from ..judge.spectrum import Spectrum
 from . import core_solver
@@ -23,6 +28,41 @@ DIGITS = 1e-10
 
 UNCONVERGED = 1e-7
 """Least discretisation error of core, relative, at one speed at which equal answers are no coincidence."""
+
+
+GIVEN_BACK = 1e-11
+"""Relative difference up to which a number of a file is one that core printed."""
+
+FEWEST = 3
+"""Smallest number of frequencies that can be recognised."""
+
+
+def given_back(blade: Blade, numbers: Sequence[tuple[float, float, float]]) -> bool:
+    """Whether numbers are those that ``southwell modes`` prints for the blade.
+
+    Equal digits prove it only where core's own uncertainty is larger: another program does not have the same error.
+
+    Args:
+        blade: the blade.
+        numbers: rotor speed and frequency, rad/s, and half a unit of the last digit, relative.
+    """
+    speeds = sorted({omega for omega, _, _ in numbers})
+    if len(numbers) < FEWEST or max(unit for *_, unit in numbers) > GIVEN_BACK:
+        return False
+    try:
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", AccuracyWarning)  # the uncertainty is compared
+            printed = {modes.omega: modes for modes in sweep(blade, speeds, allow_large_strain=True)}
+    except (*NO_STATE, ArithmeticError):
+        return False
+    unsure = 0.0
+    for omega, frequency, _ in numbers:
+        modes = printed[omega]
+        away = np.abs(frequency / modes.frequencies - 1.0)
+        if away.min() > GIVEN_BACK:
+            return False
+        unsure = max(unsure, float(modes.uncertainty[away.argmin()]))
+    return unsure > 100.0 * GIVEN_BACK
 
 
 def copied(

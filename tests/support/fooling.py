@@ -66,6 +66,11 @@ def _first_order(modes: Modes, error: float = 2e-3) -> Modes:
     return replace(modes, frequencies=modes.frequencies * (1.0 + error / modes.elements))
 
 
+def _scattered(modes: Modes, error: float = 2e-6) -> Modes:
+    """With an error whose sign changes from mesh to mesh, which refinement does not reduce."""
+    return replace(modes, frequencies=modes.frequencies * (1.0 + error * (-1.0) ** (modes.elements // 16)))
+
+
 @dataclass(frozen=True)
 class Deaf(Fooling):
     """Says that it refines, and solves the same mesh."""
@@ -103,6 +108,7 @@ class Copy(Fooling):
 FAR = Fooling("far", lambda m: replace(m, frequencies=1.4 * m.frequencies), levels=(8, 16, 32), order=4)
 DEAF = Deaf("deaf", lambda m: replace(m, frequencies=1.0009 * m.frequencies), levels=(8, 16, 32), order=4)
 CRUDE = Fooling("crude", _first_order, levels=(8, 16, 32), order=4)
+SCATTERS = Fooling("scatters", _scattered, levels=(8, 16, 32), order=4)
 FRAGILE = Fragile("fragile", lambda m: _first_order(m, 0.5), levels=(8, 16, 32), order=1)
 COPY = Copy("copy", levels=(8, 16, 32), order=4)
 LOST = Fooling("lost", _without_flap)
