@@ -94,8 +94,10 @@ class Weighing:
         """The rows: one for each property, or one with the reason why there are none."""
         code, version = self.description, self.description.version or ""
         models: list[Fingerprint] = []
-        for elements in code.levels[:2]:
+        for elements in code.levels:
             (found,) = fingerprints(code.asked, self.blade, [elements], self.limits, version)
+            if not isinstance(found, Fingerprint) and len(models) == 2:
+                break  # a finer mesh is not within the limits: the verdict is that of these two
             if not isinstance(found, Fingerprint):
                 reason = found.reason if isinstance(found, Failure) else "the code reports no mass"
                 kind = "not applicable" if found is None or found.kind == "unsupported" else "not run"
@@ -103,8 +105,8 @@ class Weighing:
                     self.case, code.name, version, "fingerprint", "", None, None, "", None, weighing.TARGET, kind
                 )
                 return [_because(row, reason)]
-            models.append(found)
-            if weighing.enough(self.blade, self.stations, found, code.effects.rotary_inertia):
+            models = [*models[-1:], found]
+            if weighing.enough(self.blade, self.stations, models, code.effects.rotary_inertia):
                 break
         weights = weighing.weights(self.blade, self.stations, models, code.effects.rotary_inertia)
         return _rows(self.case, code.name, version, weights, SHARED if code.shares == "discretisation" else "")

@@ -14,21 +14,21 @@ axes that turn with the hub are exactly, with the constant matrix ``m = ∫ Y Y�
     (m ⊗ 1) ä + 2Ω (m ⊗ B) ȧ + Ω² (m ⊗ B²) a.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 from scipy import sparse
 from scipy.interpolate import CubicSpline
-from scipy.sparse.linalg import spsolve
+from scipy.sparse.linalg import splu, spsolve
 from scipy.spatial.transform import Rotation
 
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, COUPLING_ROUNDING, SHEAR_Y, SHEAR_Z, TORSION, Blade, clamped
 from ...core.modes import STATIONS, Modes
 from ...core.space.spatial import skew
 from ..matrices.quadratic import gyroscopic_modes
-from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions
+from ..protocol.fingerprint import SPIN, Fingerprint, of_matrix, rigid_motions, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..sampling import mass_at, points, stiffness_at
 from ..theories.reference_line import JUMP, element_ends, line, moments
@@ -96,14 +96,19 @@ class ExudynGeometricallyExact(BladeAdapter):
         return Modes(omega, frequencies, shapes.transpose(2, 0, 1), len(beam.ends) - 1)
 
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
-        """From the mass matrix of all nodes at rest; see ``interface.BladeAdapter``."""
+        """From the matrices of all nodes at rest; see ``interface.BladeAdapter``."""
         beam = assemble(blade, elements)
         state = beam.reference
         A = _affine(state.axes)
         turns = np.zeros((len(beam.ends), 3, 6))
         turns[:, :, 3:] = np.swapaxes(state.axes, 1, 2)
         q = A @ np.concatenate([rigid_motions(state.position), turns], axis=1)
-        return of_matrix((np.swapaxes(q, 1, 2) @ np.kron(beam.mass, np.eye(3)) @ q).sum(axis=0), len(beam.ends) - 1)
+        inertia = (np.swapaxes(q, 1, 2) @ np.kron(beam.mass, np.eye(3)) @ q).sum(axis=0)
+        K = sparse.csc_array(elastic(beam, state)[1])[6:, 6:]
+        loads = np.zeros((K.shape[0], 6))
+        loads[-6:-3, :3], loads[-3:, 3:] = np.eye(3), state.axes[-1].T
+        flexibility = tip_flexibility(loads.T @ splu(K).solve(loads))
+        return replace(of_matrix(inertia, len(beam.ends) - 1), flexibility=flexibility)
 
 
 @dataclass(frozen=True)

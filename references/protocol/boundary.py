@@ -111,7 +111,7 @@ class _Fingerprint(Struct, frozen=True, forbid_unknown_fields=True):
     rotor_inertia: float
     elements: Elements
     start: Annotated[float, Meta(ge=0)]
-    flexibility: tuple[float, float, float] | None = None
+    flexibility: Annotated[tuple[float, ...], Meta(min_length=21, max_length=21)] | None = None
 
 
 class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):

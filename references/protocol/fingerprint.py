@@ -25,8 +25,9 @@ class Fingerprint:
         rotor_inertia: about z, kg m².
         elements: number of elements of the model.
         start: arc length at which the model's own mass begins, m; what is before it belongs to the hub.
-        flexibility: of the clamped blade at rest: displacements of the tip along y and z by unit forces there, m/N, and its
-            rotation about x by a unit moment, rad/(N m); None if the code does not report them.
+        flexibility: (21,) of the clamped blade at rest: displacements along, and rotations about, x, y, z of the tip by unit
+            forces and moments there, m/N, rad/N and rad/(N m); the upper triangle, row by row; None if the code does not
+            report it.
     """
 
     mass: float
@@ -34,12 +35,17 @@ class Fingerprint:
     rotor_inertia: float
     elements: int
     start: float = 0.0
-    flexibility: tuple[float, float, float] | None = None
+    flexibility: tuple[float, ...] | None = None
 
 
-def tip_flexibility(matrix: Array) -> tuple[float, float, float]:
-    """Those of a flexibility (6, 6) of the tip, its displacements and rotations in the hub's axes."""
-    return float(matrix[1, 1]), float(matrix[2, 2]), float(matrix[3, 3])
+UPPER = np.triu_indices(6)
+"""Rows and columns of the entries of a symmetric matrix (6, 6) that are reported."""
+
+
+def tip_flexibility(matrix: Array) -> tuple[float, ...]:
+    """The upper triangle (21,) of a flexibility (6, 6) of the tip, its displacements and rotations in the hub's axes."""
+    symmetric = 0.5 * (matrix + matrix.T)
+    return tuple(symmetric[UPPER].tolist())
 
 
 def rigid_motions(position: Array) -> Array:

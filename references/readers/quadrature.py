@@ -54,10 +54,11 @@ def weigh(blade: Mounted, tip: Array, start: float = 0.0, rotary: bool = True) -
     return _sum(bodies, axes, place, rotary)
 
 
-def bend(blade: Mounted) -> tuple[float, float, float]:
-    """Displacements of the tip of a clamped blade along y and z by unit forces, m/N, and rotation about x, rad/(N m).
+def bend(blade: Mounted) -> Array:
+    """Flexibility (6, 6) of the tip of a clamped blade: displacements and rotations by unit forces and moments there.
 
-    The axes are those of the hub. The virtual work of a section is Bᵀ C B with the strains B due to a unit load at the tip.
+    The axes are those of the hub; m/N, rad/N and rad/(N m). The virtual work of a section is Bᵀ C B with the strains B due to
+    a unit load at the tip.
     """
     s, weight = _points(blade.stations.s, 0.0)
     place, axes = placed(blade, np.append(s, blade.stations.s[-1]))
@@ -65,12 +66,11 @@ def bend(blade: Mounted) -> tuple[float, float, float]:
     soft = np.flatnonzero(np.isfinite(np.diagonal(stiffness, axis1=1, axis2=2)).all(axis=0))
     compliance = np.linalg.inv(linear(blade.stations.s, stiffness[:, soft[:, None], soft], s))
     arm = place[-1] - place[:-1]
-    out = []
-    for force, moment in (([0.0, 1.0, 0.0], [0.0] * 3), ([0.0, 0.0, 1.0], [0.0] * 3), ([0.0] * 3, [1.0, 0.0, 0.0])):
-        here = np.concatenate([np.tile(force, (len(s), 1)), moment + np.cross(arm, force)], axis=1)
-        load = np.einsum("nji,nkj->nki", axes[:-1], here.reshape(-1, 2, 3)).reshape(-1, 6)[:, soft]
-        out.append(float(np.einsum("n,ni,nij,nj->", weight, load, compliance, load)))
-    return out[0], out[1], out[2]
+    here = np.zeros((6, len(s), 2, 3))
+    for load, (force, moment) in zip(here, np.eye(6).reshape(6, 2, 3), strict=True):
+        load[:, 0], load[:, 1] = force, moment + np.cross(arm, force)
+    loads = np.einsum("nji,lnkj->lnki", axes[:-1], here).reshape(6, len(s), 6)[:, :, soft]
+    return np.einsum("n,lni,nij,mnj->lm", weight, loads, compliance, loads, optimize=True)
 
 
 def _points(stations: Array, start: float) -> tuple[Array, Array]:

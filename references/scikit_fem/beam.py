@@ -5,19 +5,20 @@ derivation. The steady stretch and twist are computed first, then the matrices a
 scikit-fem: T. Gustafsson, G. D. McBain, Journal of Open Source Software 5 (2020) 2369.
 """
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.sparse import dia_array
+from scipy.sparse import csc_array, dia_array
+from scipy.sparse.linalg import splu
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
 from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.cache_last import cache_last
-from ..protocol.fingerprint import Fingerprint, of_matrix
+from ..protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
 from ..protocol.interface import BladeAdapter, CodeError, Independence, extra
 from ..sampling import Sections, sample
 from ..theories.grading import element_ends
@@ -100,16 +101,26 @@ class ScikitFemBeam(BladeAdapter):
         return Modes(omega, frequencies, shapes, basis.mesh.nelements)
 
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
-        """From the mass matrix of all coordinates at rest; see ``interface.BladeAdapter``."""
+        """From the matrices of all coordinates at rest; see ``interface.BladeAdapter``."""
         basis, parts, _ = _mesh(blade, elements)
-        M, _, _ = _matrices(blade, 0.0, parts)
+        M, _, K = _matrices(blade, 0.0, parts)
         q = np.zeros((basis.N, 6))
         bases = basis.split_bases()
         for k, (of, field) in enumerate(zip(basis.split_indices(), bases, strict=True)):
             q[of, k] = field.project(lambda x: np.ones_like(x[0]))
             if k in (1, 2):  # rotations about z and y move v and w
                 q[of, 5 if k == 1 else 4] = (1 if k == 1 else -1) * field.project(lambda x: blade.hub_radius + x[0])
-        return of_matrix(q.T @ (M @ q), basis.mesh.nelements)
+        weighed = of_matrix(q.T @ (M @ q), basis.mesh.nelements)
+        if not clamped(blade):
+            return weighed
+        tip = basis.get_dofs("tip").nodal
+        names = (("u^1", 1.0), ("u^2", 1.0), ("u^3", 1.0), ("u^4", 1.0), ("u_x^3", -1.0), ("u_x^2", 1.0))
+        loads = np.zeros((basis.N, 6))
+        for k, (name, sign) in enumerate(names):
+            loads[int(tip[name][0]), k] = sign
+        free = basis.complement_dofs(basis.get_dofs("root").flatten())
+        moved = splu(csc_array(K[free][:, free])).solve(loads[free])
+        return replace(weighed, flexibility=tip_flexibility(loads[free].T @ moved))
 
 
 def _hinges(blade: Blade, basis: Any) -> dict[int, float]:
