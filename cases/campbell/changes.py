@@ -58,20 +58,20 @@ def changes(
     return tuple(row for omega in speeds for row in _at(blade, first(omega), second(omega), modes, weight))
 
 
-def _at(blade: Blade, found: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
-    found, other = aligned(found, weight), aligned(other, weight)
-    indices = range(min(modes, len(found.frequencies)))
-    names = numbered(families(participation(found, blade)))
+def _at(blade: Blade, ours: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
+    ours, other = aligned(ours, weight), aligned(other, weight)
+    indices = range(min(modes, len(ours.frequencies)))
+    names = numbered(families(participation(ours, blade)))
     out = []
-    partners = pair(of_blade(found, weight), of_blade(other), indices)
+    partners = pair(of_blade(ours, weight), of_blade(other), indices)
     for k, partner in zip(indices, partners, strict=True):
         theirs, sure = np.nan, np.nan
         if partner.mode is not None:
             theirs, sure = (
                 float(other.frequencies[partner.mode]),
-                _uncertainty(found, k) + _uncertainty(other, partner.mode),
+                _uncertainty(ours, k) + _uncertainty(other, partner.mode),
             )
-        out.append(Changed(found.omega, names[k], float(found.frequencies[k]), theirs, sure, partner.mac, partner.note))
+        out.append(Changed(ours.omega, names[k], float(ours.frequencies[k]), theirs, sure, partner.mac, partner.note))
     return out
 
 

@@ -124,11 +124,11 @@ def solver(
         try:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the answer
-                found = next(stream)
+                modes = next(stream)
         except NO_STATE as error:
             raise unsteady(blade.name, omega, error, at) from error
         on_speed(omega)
-        return found
+        return modes
 
     return solve
 

@@ -62,13 +62,13 @@ class Encounter:
 
 def encounters(tracks: Tracks, fractions: Array, weight: Array) -> tuple[Encounter, ...]:
     """All encounters, by speed; ``fractions`` (n, t, 4) are the energy fractions of the tracks at each speed."""
-    found = []
+    pairs = []
     for i in range(tracks.count):
         for j in range(i + 1, tracks.count):
             both = np.flatnonzero((tracks.place[:, i] >= 0) & (tracks.place[:, j] >= 0))
             for run in np.split(both, np.flatnonzero(np.diff(both) > 1) + 1):
-                found += _of_pair(tracks, fractions, weight, i, j, run)
-    return tuple(sorted(found, key=lambda e: (e.omega, e.frequency)))
+                pairs += _of_pair(tracks, fractions, weight, i, j, run)
+    return tuple(sorted(pairs, key=lambda e: (e.omega, e.frequency)))
 
 
 def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k: Index) -> list[Encounter]:
@@ -79,20 +79,20 @@ def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k:
     d = squares[:, 1] - squares[:, 0]
     above = tracks.place[k, j] > tracks.place[k, i]
     swaps = np.flatnonzero(above[1:] != above[:-1])
-    found = []
+    within_pair = []
     for a in swaps:
         at = x[a] - d[a] * (x[a + 1] - x[a]) / (d[a + 1] - d[a]) if d[a + 1] != d[a] else x[a]
         where = float(np.sqrt(np.clip(at, x[a], x[a + 1])))
         square = float(np.interp(at, x, squares.mean(1)))
         gap = float(tracks.bound[k[a + 1], i, j])
         pair = (i, j) if above[a] else (j, i)
-        found.append(
+        within_pair.append(
             _encounter("crossing", tracks, fractions, weight, pair, where, square, gap, (k[a], k[a + 1]), True)
         )
     size = np.abs(d)
     ends = [0, *(swaps + 1).tolist(), len(k)]  # between crossings
     for first, last in pairwise(ends):
-        found += _veerings(
+        within_pair += _veerings(
             tracks,
             fractions,
             weight,
@@ -102,7 +102,7 @@ def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k:
             size[first:last],
             squares[first:last],
         )
-    return found
+    return within_pair
 
 
 def _veerings(
@@ -116,22 +116,22 @@ def _veerings(
     squares: Array,
 ) -> list[Encounter]:
     """Interior minima of the distance with exchange of shapes; ``size`` is the distance of the squared frequencies."""
-    found = []
+    veerings = []
     inside = np.flatnonzero((size[1:-1] <= size[:-2]) & (size[1:-1] < size[2:])) + 1
     for m in inside.tolist():
         at, smallest = _closest(x[m - 1 : m + 2], size[m - 1 : m + 2])
-        a, left = _passed(size, m, -1, smallest)
-        b, right = _passed(size, m, 1, smallest)
+        a, before = _passed(size, m, -1, smallest)
+        b, after = _passed(size, m, 1, smallest)
         square = float(np.interp(at, x, squares.mean(1)))
         gap = float(smallest / (2.0 * np.sqrt(square)))
         order = pair if squares[m, 0] < squares[m, 1] else (pair[1], pair[0])
         window = (int(k[a]), int(k[b]))
         e = _encounter(
-            "veering", tracks, fractions, weight, order, float(np.sqrt(at)), square, gap, window, left and right
+            "veering", tracks, fractions, weight, order, float(np.sqrt(at)), square, gap, window, before and after
         )
         if e.exchanged >= EXCHANGED:
-            found.append(e)
-    return found
+            veerings.append(e)
+    return veerings
 
 
 def _closest(x: Array, size: Array) -> tuple[float, float]:

@@ -76,8 +76,8 @@ class Line:
 
     def crosses(self, n: int) -> list[float]:
         """Rotor speeds, rad/s, at which the frequency crosses n per revolution, except where it may only touch it."""
-        found = PchipInterpolator(self.squares, self.values - n**2 * self.squares).roots(extrapolate=False)
-        speeds = np.sqrt(np.unique(found[np.isfinite(found) & (found > 0)])).tolist()
+        roots = PchipInterpolator(self.squares, self.values - n**2 * self.squares).roots(extrapolate=False)
+        speeds = np.sqrt(np.unique(roots[np.isfinite(roots) & (roots > 0)])).tolist()
         only = self.touches(n).items()
         return [omega for omega in speeds if not any(abs(omega / at - 1.0) <= width for at, width in only)]
 
@@ -86,13 +86,13 @@ class Line:
 
         With the relative uncertainty of each: half the width over which the two cannot be distinguished.
         """
-        found: dict[float, float] = {}
+        widths: dict[float, float] = {}
         for m in self._minima(n):
             if m.near and m.least <= m.within:
                 at, width = float(np.sqrt(m.square)), float(np.sqrt((m.within + abs(m.least)) / m.curvature))
-                if not any(abs(at / other - 1.0) <= wide for other, wide in found.items()):
-                    found[at] = width / (2.0 * m.square)
-        return found
+                if not any(abs(at / other - 1.0) <= wide for other, wide in widths.items()):
+                    widths[at] = width / (2.0 * m.square)
+        return widths
 
     def near_crossings(self, n: int) -> list[float]:
         """Speeds, rad/s, at which to solve: the frequency may reach n per revolution there, but not at the solved speeds."""

@@ -46,14 +46,14 @@ def load(path: Path, blade: Blade) -> Array:
         raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows must ascend from 0 (root) to 1 (tip)")
     stations = blade.stations / blade.length
     given = np.stack([table[name] for name in LOAD[1:]], axis=-1)
-    found = _linear(stations, at, given)
-    off = np.abs(_linear(at, stations, found) - given).max(1)
+    per_length = _linear(stations, at, given)
+    off = np.abs(_linear(at, stations, per_length) - given).max(1)
     if off.max() > 1e-6 * np.abs(given).max():
         raise CaseError(
             f"{path}: {LOAD[0]} {at[off.argmax()]:g}: the load is not linear between the blade's {len(stations)} stations: "
             "add a station to the blade there, or give the load at its stations only"
         )
-    return found
+    return per_length
 
 
 def _linear(where: Array, at: Array, values: Array) -> Array:

@@ -71,16 +71,16 @@ def resonances(
     operating: Range | None,
 ) -> tuple[Resonance, ...]:
     """Resonances of each line with each n per revolution, by speed; ``solve`` is the source of the tracks."""
-    found = []
+    crossings = []
     for t, line in enumerate(lines):
         for n in per_rev if line is not None else ():
             assert line is not None
             for start in line.crosses(n):
                 omega, sure = _solved(solve, tracks, t, line, weight, n, start)
-                found.append(Resonance(t, n, omega, n * omega, sure, _apart(omega, operating)))
+                crossings.append(Resonance(t, n, omega, n * omega, sure, _apart(omega, operating)))
             for omega, sure in line.touches(n).items():
-                found.append(Resonance(t, n, omega, n * omega, sure, _apart(omega, operating), touches=True))
-    return tuple(sorted(found, key=lambda r: (r.omega, r.per_rev)))
+                crossings.append(Resonance(t, n, omega, n * omega, sure, _apart(omega, operating), touches=True))
+    return tuple(sorted(crossings, key=lambda r: (r.omega, r.per_rev)))
 
 
 def near_crossings(lines: Sequence[Line | None], per_rev: Sequence[int]) -> list[float]:
@@ -112,44 +112,44 @@ def _solved(
     It stays between two solved speeds. Its slope is first the line's, then that to the nearest point where it is certain. The
     interpolated speed and its uncertainty are returned if the mode at a speed is not certainly that of the track.
     """
-    there = np.flatnonzero(tracks.place[:, t] >= 0)
-    k = there[np.searchsorted(tracks.omega[there], start).clip(1, len(there) - 1) - 1 :][:2]
-    known = {
+    tracked = np.flatnonzero(tracks.place[:, t] >= 0)
+    k = tracked[np.searchsorted(tracks.omega[tracked], start).clip(1, len(tracked) - 1) - 1 :][:2]
+    distances = {
         float(o**2): float(f**2 - (n * o) ** 2) for o, f in zip(tracks.omega[k], tracks.frequencies[k, t], strict=True)
     }
-    low, high = known
-    x, slope, chord = start**2, line.slope(start) - n**2, (known[high] - known[low]) / (high - low)
+    low, high = distances
+    x, slope, chord = start**2, line.slope(start) - n**2, (distances[high] - distances[low]) / (high - low)
     interpolated = start, line.uncertainty(start) * n**2 / max(abs(slope), 1e-300)
     doubt = abs(slope / chord - 1.0) if chord else np.inf
     for step in range(_STEPS):
-        found = aligned(solve(float(np.sqrt(x))), weight)
-        mode = _same(tracks, t, k, found, weight)
+        modes = aligned(solve(float(np.sqrt(x))), weight)
+        mode = _same(tracks, t, k, modes, weight)
         if mode is None:
             return interpolated
-        square = float(found.frequencies[mode]) ** 2
-        noise = 2.0 * float(found.uncertainty[mode]) * square if len(found.uncertainty) else np.inf
+        square = float(modes.frequencies[mode]) ** 2
+        noise = 2.0 * float(modes.uncertainty[mode]) * square if len(modes.uncertainty) else np.inf
         floor = noise if np.isfinite(noise) else 0.0
         distance = square - n**2 * x
-        others = [y for y in known if y != x and abs(known[y] - distance) > _CERTAIN * floor]
+        others = [y for y in distances if y != x and abs(distances[y] - distance) > _CERTAIN * floor]
         if others and (step or doubt > _STEEP):
             near = min(others, key=lambda y: abs(y - x))
-            now = (distance - known[near]) / (x - near)
+            now = (distance - distances[near]) / (x - near)
             doubt, slope = abs(now / slope - 1.0) if slope else 1.0, now
-        known[x] = distance
-        low, high = (x, high) if distance * known[low] > 0 else (low, x)
+        distances[x] = distance
+        low, high = (x, high) if distance * distances[low] > 0 else (low, x)
         move = -distance / slope if slope else np.inf
-        left = abs(move) * (doubt + _SLOPE_DOUBT)  # error of the step, due to that of the slope
-        if low <= x + move <= high and left <= max(0.1 * floor / abs(slope), _NEGLIGIBLE * x):
-            return float(np.sqrt(x + move)), (noise / abs(slope) + left) / (2.0 * x)
+        step_error = abs(move) * (doubt + _SLOPE_DOUBT)  # error of the step, due to that of the slope
+        if low <= x + move <= high and step_error <= max(0.1 * floor / abs(slope), _NEGLIGIBLE * x):
+            return float(np.sqrt(x + move)), (noise / abs(slope) + step_error) / (2.0 * x)
         x = x + move if low < x + move < high else 0.5 * (low + high)
     return interpolated
 
 
-def _same(tracks: Tracks, t: int, near: NDArray[np.intp], found: Modes, weight: Array) -> int | None:
+def _same(tracks: Tracks, t: int, near: NDArray[np.intp], solved: Modes, weight: Array) -> int | None:
     """The mode whose shape is that of the track at both neighbouring speeds; None if that is not certain."""
     modes = set()
     for k in near:
-        table = mac(tracks.shapes[k, [t]], found.shapes, weight)[0]
+        table = mac(tracks.shapes[k, [t]], solved.shapes, weight)[0]
         modes.add(int(table.argmax()) if table.max() >= SURE else -1)
     return modes.pop() if len(modes) == 1 and -1 not in modes else None
 

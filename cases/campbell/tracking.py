@@ -230,11 +230,11 @@ def _tables(
     shapes = np.full((n, t, *points[0].shapes.shape[1:]), np.nan, complex)
     bound = np.full((n, t, t), np.nan)
     for k, modes in enumerate(points):
-        known = modes.uncertainty if len(modes.uncertainty) else np.full(len(modes.frequencies), np.inf)
+        uncertainty = modes.uncertainty if len(modes.uncertainty) else np.full(len(modes.frequencies), np.inf)
         for p, name in enumerate(owner[k]):
             if name in column:
                 i = column[name]
-                sure[k, i] = known[p]
+                sure[k, i] = uncertainty[p]
                 frequencies[k, i], place[k, i], shapes[k, i] = modes.frequencies[p], p, modes.shapes[p]
                 if k and name in owner[k - 1]:
                     similar[k, i] = links[k - 1].table[owner[k - 1].index(name), p]

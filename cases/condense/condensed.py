@@ -51,7 +51,7 @@ def modes(blade: Condensed, omega: float, count: int, allow_large_strain: bool =
         raise unsteady(blade.name, omega, error) from error
 
 
-def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
+def names(segments: list[Segment], modes: Modes) -> tuple[str, ...]:
     """The family of each mode and its number in it, from the fractions of kinetic energy; see ``core.participation``.
 
     Each body is assumed to move like the sample beside it, and the sections' frames to be parallel to the hub's.
@@ -60,7 +60,7 @@ def names(segments: list[Segment], found: Modes) -> tuple[str, ...]:
     at = 0.5 * (ends[:-1] + ends[1:]) / ends[-1]
     k = np.clip(np.searchsorted(STATIONS, at) - 1, 0, len(STATIONS) - 2)
     t = ((at - STATIONS[k]) / (STATIONS[k + 1] - STATIONS[k]))[:, None]
-    sample = found.shapes[:, k] * (1 - t) + found.shapes[:, k + 1] * t
+    sample = modes.shapes[:, k] * (1 - t) + modes.shapes[:, k + 1] * t
     mass, centre, tensor = (np.array(v) for v in zip(*(body(s) for s in segments), strict=True))
     lever = np.cross([1.0, 0.0, 0.0], centre)
     energy = mass[:, None] * np.abs(sample[..., :3] + sample[..., 3:] * lever) ** 2
@@ -112,13 +112,15 @@ def read(path: Path) -> Condensed:
     sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "ride": 6}
     pieces = []
     for k, piece in enumerate(kept.segments):
-        found = {field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()}
+        matrices = {
+            field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()
+        }
         for field in ("stiffness", "inertia"):
-            if not _positive(found[field]):
+            if not _positive(matrices[field]):
                 raise CaseError(f"{path}: segments[{k}].{field}: not symmetric and positive definite: {CHANGED}")
-        if not _is_pose(found["undeformed"]):
+        if not _is_pose(matrices["undeformed"]):
             raise CaseError(f"{path}: segments[{k}].undeformed: not a rotation and a displacement: {CHANGED}")
-        pieces.append(Segment(**found))
+        pieces.append(Segment(**matrices))
     root = _square(path, "root", kept.root, 4)
     if not _is_pose(root):
         raise CaseError(f"{path}: root: not a rotation and a displacement: {CHANGED}")

@@ -189,12 +189,12 @@ def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
     most = (abs(model.stiffness) @ np.abs(R)).max(
         axis=0
     )  # none at all where nothing resists the motion, nor any part of it
-    left = np.abs(model.stiffness @ R).max(axis=0) / np.where(most > 0, most, 1.0)
-    if left.max() > ties.ASYMMETRY:
-        k = int(left.argmax())
+    residual = np.abs(model.stiffness @ R).max(axis=0) / np.where(most > 0, most, 1.0)
+    if residual.max() > ties.ASYMMETRY:
+        k = int(residual.argmax())
         motion = f"{'translation along' if k < 3 else 'rotation about'} {'xyz'[k % 3]}"
         raise CaseError(
-            f"{path}: {field}stiffness: {model.name} resists the {motion} of the whole as a rigid body ({left[k]:.1e} of "
+            f"{path}: {field}stiffness: {model.name} resists the {motion} of the whole as a rigid body ({residual[k]:.1e} of "
             "the forces in it): supports in it, or wrong node positions (order, units)? export it unconstrained"
         )
-    return float(left.max())
+    return float(residual.max())

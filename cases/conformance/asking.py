@@ -33,17 +33,17 @@ def keep(true: Any, message: str) -> None:
         raise BrokenError(message)
 
 
-def close(found: Any, exact: Any, what: str, within: float, first: int = 1) -> None:
+def close(values: Any, exact: Any, what: str, within: float, first: int = 1) -> None:
     """Compare the frequencies (rad/s) of the modes ``first``, … with the expected ones, within a relative tolerance.
 
     ``what`` names the blade with its parameter and speed; the message adds the mode that differs most.
     """
-    found, exact = np.atleast_1d(found), np.atleast_1d(exact)
-    keep(len(found) >= len(exact), f"{what}: {len(found)} modes, {len(exact)} expected")
-    found = found[: len(exact)]
-    off = np.abs(found / exact - 1.0)
+    values, exact = np.atleast_1d(values), np.atleast_1d(exact)
+    keep(len(values) >= len(exact), f"{what}: {len(values)} modes, {len(exact)} expected")
+    values = values[: len(exact)]
+    off = np.abs(values / exact - 1.0)
     k = int(off.argmax())
-    said = f"{what}, mode {first + k}: {found[k]:.9g} rad/s, expected {exact[k]:.9g}"
+    said = f"{what}, mode {first + k}: {values[k]:.9g} rad/s, expected {exact[k]:.9g}"
     keep(off[k] <= within, f"{said}: {off[k]:.1e} apart, at most {within:.0e}")
 
 
@@ -97,9 +97,9 @@ def limit_of(
 def along(modes: Modes, axis: int) -> int:
     """The lowest mode whose tip moves most along ``axis`` of y, z."""
     tips = np.abs(modes.shapes[:, -1, 1:3])
-    found = np.flatnonzero(tips[:, axis - 1] > tips[:, 2 - axis])
-    keep(found.size, f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: axes not converted?")
-    return int(found[0])
+    modes_along = np.flatnonzero(tips[:, axis - 1] > tips[:, 2 - axis])
+    keep(modes_along.size, f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: axes not converted?")
+    return int(modes_along[0])
 
 
 def agrees(code: BladeAdapter, blade: Blade, omega: float, exact: float, axis: int | None = None) -> None:

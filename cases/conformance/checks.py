@@ -7,7 +7,7 @@ import numpy as np
 from ...core.blade import AXIAL
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.interface import BladeAdapter, CodeError
-from . import blades as known
+from . import blades
 from .asking import (
     TOLERANCE,
     BrokenError,
@@ -70,48 +70,48 @@ def at_rest(code: BladeAdapter) -> None:
 
 def turning(code: BladeAdapter) -> None:
     """Stiffened by tension, softened in the plane of rotation."""
-    omega = known.WRIGHT_SPEED
-    agrees(code, BEAM, omega, known.WRIGHT, axis=2)
-    agrees(code, BEAM, omega, float(np.sqrt(known.WRIGHT**2 - omega**2)), axis=1)
+    omega = blades.WRIGHT_SPEED
+    agrees(code, BEAM, omega, blades.WRIGHT, axis=2)
+    agrees(code, BEAM, omega, float(np.sqrt(blades.WRIGHT**2 - omega**2)), axis=1)
 
 
 def counts(code: BladeAdapter) -> None:
     """The requested number of modes is returned."""
-    few, many = (ask(code, BEAM, known.SPEED, 0, count) for count in (3, 8))
+    few, many = (ask(code, BEAM, blades.SPEED, 0, count) for count in (3, 8))
     for modes, count in ((few, 3), (many, 8)):
         f = modes.frequencies
-        keep(3 <= len(f) <= count, f"beam at {known.SPEED:g} rad/s: {count} modes requested, {len(f)} returned")
+        keep(3 <= len(f) <= count, f"beam at {blades.SPEED:g} rad/s: {count} modes requested, {len(f)} returned")
         bad = np.flatnonzero(~(f > 0) | (np.diff(f, prepend=0.0) < 0))
         keep(
             not bad.size,
-            f"beam at {known.SPEED:g} rad/s, mode {int(bad[0]) + 1 if bad.size else 0}: frequencies {f.tolist()}: not positive "
-            "and ascending",
+            f"beam at {blades.SPEED:g} rad/s, mode {int(bad[0]) + 1 if bad.size else 0}: frequencies {f.tolist()}: not "
+            "positive and ascending",
         )
-        keep(modes.omega == known.SPEED, f"Modes.omega: {modes.omega}, requested {known.SPEED}")
+        keep(modes.omega == blades.SPEED, f"Modes.omega: {modes.omega}, requested {blades.SPEED}")
         keep(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, requested {code.levels[0]}")
-    close(many.frequencies, few.frequencies, f"beam at {known.SPEED:g} rad/s, 3 and 8 requested", same(code))
+    close(many.frequencies, few.frequencies, f"beam at {blades.SPEED:g} rad/s, 3 and 8 requested", same(code))
 
 
 def repeats(code: BladeAdapter) -> None:
     """No state remains from another call."""
-    first = ask(code, BEAM, known.SPEED, 0)
+    first = ask(code, BEAM, blades.SPEED, 0)
     ask(code, replace(BEAM, hub_radius=1.0), 1.0, 1)
-    again = ask(code, BEAM, known.SPEED, 0)
+    again = ask(code, BEAM, blades.SPEED, 0)
     alike = np.array_equal(first.frequencies, again.frequencies) and np.array_equal(first.shapes, again.shapes)
     keep(
         alike,
-        f"beam at {known.SPEED:g} rad/s: the same call before and after another (hub radius 1 m, 1 rad/s): "
+        f"beam at {blades.SPEED:g} rad/s: the same call before and after another (hub radius 1 m, 1 rad/s): "
         f"{first.frequencies.tolist()}, then {again.frequencies.tolist()}",
     )
 
 
 def shapes(code: BladeAdapter) -> None:
     """The first shape, nearly that at rest."""
-    shape = ask(code, BEAM, known.SPEED, 1).shapes[0]
-    at = f"beam at {known.SPEED:g} rad/s, mode 1"
+    shape = ask(code, BEAM, blades.SPEED, 1).shapes[0]
+    at = f"beam at {blades.SPEED:g} rad/s, mode 1"
     keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"{at}: the root moves: {shape[0].tolist()}")
     moved = np.abs(shape[:, 1:3]).max(axis=1)
-    wrong = np.abs(moved / moved[-1] - known.cantilever_shape()).max()
+    wrong = np.abs(moved / moved[-1] - blades.cantilever_shape()).max()
     keep(
         wrong < 0.02,
         f"{at}: the shape differs from the cantilever's by up to {wrong:.3f} of the tip's motion: wrong stations or scale?",
@@ -124,9 +124,9 @@ def order(code: BladeAdapter) -> None:
     """Observed order at the three coarsest levels."""
     if not code.order:
         raise NotForItError("spectral: no order")
-    found = [ask(code, BEAM, 0.0, level, 3) for level in (0, 1, 2)]
-    f = np.array([modes.frequencies[2] for modes in found])
-    n = [modes.elements for modes in found]
+    frequencies = [ask(code, BEAM, 0.0, level, 3) for level in (0, 1, 2)]
+    f = np.array([modes.frequencies[2] for modes in frequencies])
+    n = [modes.elements for modes in frequencies]
     first, second = np.abs(np.diff(f)) / f[-1]
     if second < 1e-9:
         return
@@ -148,16 +148,19 @@ def units(code: BladeAdapter) -> None:
         stiffness=BEAM.stiffness * mass * length ** (1.0 + power) * rate**2,
         mass=BEAM.mass * mass * length ** (power - 1.0),
     )
-    here, there = ask(code, BEAM, known.SPEED, 0), ask(code, other, known.SPEED * rate, 0)
+    in_si, in_other_units = ask(code, BEAM, blades.SPEED, 0), ask(code, other, blades.SPEED * rate, 0)
     close(
-        there.frequencies / rate, here.frequencies, f"beam at {known.SPEED:g} rad/s, in ft, lb and min", rounding(code)
+        in_other_units.frequencies / rate,
+        in_si.frequencies,
+        f"beam at {blades.SPEED:g} rad/s, in ft, lb and min",
+        rounding(code),
     )
 
 
 def quarter_pitch(code: BladeAdapter) -> None:
     """A pitch of 90° exchanges the planes."""
-    pitched, plain = (ask(code, b, known.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), known.SWAPPED))
-    at = f"plank pitched by 90° at {known.SPEED:g} rad/s"
+    pitched, plain = (ask(code, b, blades.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), blades.SWAPPED))
+    at = f"plank pitched by 90° at {blades.SPEED:g} rad/s"
     close(pitched.frequencies, plain.frequencies, f"{at}, against exchanged planes", same(code))
     for axis in (1, 2):
         alike = along(pitched, axis) == along(plain, axis)
@@ -166,14 +169,14 @@ def quarter_pitch(code: BladeAdapter) -> None:
 
 def pitch_sense(code: BladeAdapter) -> None:
     """Flapwise motion leans to −y."""
-    found = _lean(ask(code, replace(PLANK, pitch=0.3), 0.0, 1))
-    _leans(found, "pitched")
+    lean = _lean(ask(code, replace(PLANK, pitch=0.3), 0.0, 1))
+    _leans(lean, "pitched")
 
 
 def twist_sense(code: BladeAdapter) -> None:
     """The same by twist."""
-    found = _lean(ask(code, replace(PLANK, twist=np.array([0.3, 0.3])), 0.0, 1))
-    _leans(found, "twisted")
+    lean = _lean(ask(code, replace(PLANK, twist=np.array([0.3, 0.3])), 0.0, 1))
+    _leans(lean, "twisted")
 
 
 def precone_sense(code: BladeAdapter) -> None:
@@ -181,9 +184,9 @@ def precone_sense(code: BladeAdapter) -> None:
     _leans(_lean(ask(code, replace(PLANK, precone=0.3), 0.0, 1), axis=0), "coned", "x")
 
 
-def _leans(found: float, how: str, axis: str = "y") -> None:
+def _leans(ratio: float, how: str, axis: str = "y") -> None:
     at = f"plank {how} by 0.3 rad at 0 rad/s, mode 1"
-    keep(abs(found + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {found:.4f}, expected −tan 0.3: wrong sense?")
+    keep(abs(ratio + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {ratio:.4f}, expected −tan 0.3: wrong sense?")
 
 
 def _lean(modes: Modes, axis: int = 1) -> float:
@@ -193,7 +196,7 @@ def _lean(modes: Modes, axis: int = 1) -> float:
 
 def coriolis_sense(code: BladeAdapter) -> None:
     """The Coriolis force stretches a blade that moves along +y: ``EA u″ + m (ω² + Ω²) u = −2 i m Ω ω v`` for exp(iωt)."""
-    blade, omega = known.STUBBY, known.FAST
+    blade, omega = blades.STUBBY, blades.FAST
     if not code.effects.coriolis:
         raise NotForItError("the code has no Coriolis terms")
     try:
@@ -203,9 +206,9 @@ def coriolis_sense(code: BladeAdapter) -> None:
     lag = along(modes, 1)
     u, v = modes.shapes[lag, -1, 0], modes.shapes[lag, :, 1]
     s, EA, w = STATIONS * LENGTH, blade.stiffness[0, AXIAL, AXIAL], modes.frequencies[lag]
-    k = np.sqrt(known.MASS * (w**2 + omega**2) / EA)
+    k = np.sqrt(blades.MASS * (w**2 + omega**2) / EA)
     green = np.sin(k * s) / (k * np.cos(k * LENGTH))  # of a rod with a fixed root and a free end, at its end
-    exact = 2j * known.MASS * omega * w / EA * np.trapezoid(green * v, s)
+    exact = 2j * blades.MASS * omega * w / EA * np.trapezoid(green * v, s)
     keep(
         abs(u - exact) < 0.05 * abs(exact),
         f"{blade.name} at {omega:g} rad/s, mode {lag + 1}: stretch over edgewise motion at the tip {u / v[-1]:.4f}, expected "
@@ -215,14 +218,14 @@ def coriolis_sense(code: BladeAdapter) -> None:
 
 def torsion(code: BladeAdapter) -> None:
     """π/2 √(GJ / I) / L, a quarter of a sine; or no such mode at all."""
-    blade, exact = known.shaft()
+    blade, exact = blades.shaft()
     limit, fine, _ = limit_of(code, blade, 0.0)
     bend = np.abs(fine.shapes[:, :, :3]).max((1, 2)) / LENGTH
     turns = np.flatnonzero(np.abs(fine.shapes[:, :, 3]).max(1) > 10 * bend)
     if not turns.size:
-        there = (np.abs(limit / exact - 1.0) < TOLERANCE).any()
+        is_torsion = (np.abs(limit / exact - 1.0) < TOLERANCE).any()
         keep(
-            not there,
+            not is_torsion,
             f"soft shaft at 0 rad/s: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
         )
         raise NotForItError("the code has no torsion")
@@ -236,42 +239,42 @@ def torsion(code: BladeAdapter) -> None:
 
 def tip_mass_weighs(code: BladeAdapter) -> None:
     """At rest."""
-    agrees(code, known.WITH_TIP_MASS, 0.0, known.TIP_AT_REST)
+    agrees(code, blades.WITH_TIP_MASS, 0.0, blades.TIP_AT_REST)
 
 
 def tip_mass_pulls(code: BladeAdapter) -> None:
     """Rotating: its centrifugal force is the tip's tension."""
-    agrees(code, known.WITH_TIP_MASS, known.TIP_SPEED, known.TIP_TURNING, axis=2)
+    agrees(code, blades.WITH_TIP_MASS, blades.TIP_SPEED, blades.TIP_TURNING, axis=2)
 
 
 def tip_mass_axes(code: BladeAdapter) -> None:
     """A tip mass beside the axis is given in the tip section's axes: with the whole blade twisted, it turns as with pitch."""
-    blade = replace(PLANK, tip_mass=known.BESIDE)
+    blade = replace(PLANK, tip_mass=blades.BESIDE)
     twisted, pitched = (
-        ask(code, b, known.SPEED, 0) for b in (replace(blade, twist=np.array([0.5, 0.5])), replace(blade, pitch=0.5))
+        ask(code, b, blades.SPEED, 0) for b in (replace(blade, twist=np.array([0.5, 0.5])), replace(blade, pitch=0.5))
     )
-    at = f"plank with an offset tip mass at {known.SPEED:g} rad/s, twisted by 0.5 rad, against pitched"
+    at = f"plank with an offset tip mass at {blades.SPEED:g} rad/s, twisted by 0.5 rad, against pitched"
     close(twisted.frequencies, pitched.frequencies, at, same(code))
 
 
 def coupled_planes(code: BladeAdapter) -> None:
     """Bending stiffness with a product EI_yz."""
-    agrees(code, known.coupled_plank(), 0.0, float(CANTILEVER[0]))
+    agrees(code, blades.coupled_plank(), 0.0, float(CANTILEVER[0]))
 
 
 def corner(code: BladeAdapter) -> None:
     """Two straight pieces at right angles, at rest."""
-    blade, exact = known.cornered()
+    blade, exact = blades.cornered()
     agrees(code, blade, 0.0, exact, axis=1)
 
 
 def hinged_root(code: BladeAdapter) -> None:
     """With a flap hinge at the rotor's axis the first flapwise mode is a straight line at Ω, whatever the stiffness."""
-    agrees(code, known.HINGED, known.SPEED, known.SPEED, axis=2)
+    agrees(code, blades.HINGED, blades.SPEED, blades.SPEED, axis=2)
 
 
 def shear(code: BladeAdapter) -> None:
     """A short beam, soft in shear and softer along z than along y, at rest."""
-    blade = known.short_beam(known.SHEAR, along_y=known.SHEAR_Y)
-    agrees(code, blade, 0.0, known.timoshenko(), axis=2)
-    agrees(code, blade, 0.0, known.timoshenko(known.SHEAR_Y), axis=1)
+    blade = blades.short_beam(blades.SHEAR, along_y=blades.SHEAR_Y)
+    agrees(code, blade, 0.0, blades.timoshenko(), axis=2)
+    agrees(code, blade, 0.0, blades.timoshenko(blades.SHEAR_Y), axis=1)

@@ -31,16 +31,16 @@ def _ask(code: MechanismAdapter, mechanism: mb.Mechanism, guess: Mapping[str, fl
     return code.solve_mechanism(mechanism, guess or {})
 
 
-def _are(found: MechanismModes, expected: Any, what: str) -> None:
+def _are(modes: MechanismModes, expected: Any, what: str) -> None:
     """Check the eigenvalues, one of each conjugate pair, in any order."""
-    wanted = np.asarray(expected, np.complex128)
-    said = f"{what}: {_list(found.values)} 1/s, expected {_list(wanted)}"
-    keep(len(found.values) == len(wanted), said)
-    left = [complex(v.real, abs(v.imag)) for v in found.values]
-    for value in wanted:
-        near = min(left, key=lambda v: abs(v - value))
-        keep(abs(near - value) <= TOLERANCE * np.abs(wanted).max(), said)
-        left.remove(near)
+    exact = np.asarray(expected, np.complex128)
+    said = f"{what}: {_list(modes.values)} 1/s, expected {_list(exact)}"
+    keep(len(modes.values) == len(exact), said)
+    unmatched = [complex(v.real, abs(v.imag)) for v in modes.values]
+    for value in exact:
+        near = min(unmatched, key=lambda v: abs(v - value))
+        keep(abs(near - value) <= TOLERANCE * np.abs(exact).max(), said)
+        unmatched.remove(near)
 
 
 def _list(values: Array) -> str:
@@ -108,10 +108,10 @@ def refuses(code: MechanismAdapter) -> None:
 
 def hangs(code: MechanismAdapter) -> None:
     """√(g/l), and the steady state from a guess near it."""
-    found = _ask(code, pendulum(), {"hinge.rz": 0.3})
-    _are(found, [1j * np.sqrt(G / LENGTH)], "pendulum")
-    keep(found.coordinates == ("hinge.rz",), f"coordinates: {found.coordinates}, expected ('hinge.rz',)")
-    keep(abs(found.steady[0]) < 1e-9, f"pendulum: it hangs at {found.steady[0]:.3g} rad, expected 0")
+    modes = _ask(code, pendulum(), {"hinge.rz": 0.3})
+    _are(modes, [1j * np.sqrt(G / LENGTH)], "pendulum")
+    keep(modes.coordinates == ("hinge.rz",), f"coordinates: {modes.coordinates}, expected ('hinge.rz',)")
+    keep(abs(modes.steady[0]) < 1e-9, f"pendulum: it hangs at {modes.steady[0]:.3g} rad, expected 0")
 
 
 def oscillates(code: MechanismAdapter) -> None:
@@ -123,11 +123,11 @@ def oscillates(code: MechanismAdapter) -> None:
         coordinate_springs=(mb.CoordinateSpring("rail.z", k, c, 0.05),),
         gravity=DOWN,
     )
-    found = _ask(code, slide)
+    modes = _ask(code, slide)
     decay = c / (2 * MASS)
-    _are(found, [complex(-decay, np.sqrt(k / MASS - decay**2))], "damped slide")
+    _are(modes, [complex(-decay, np.sqrt(k / MASS - decay**2))], "damped slide")
     at = 0.05 - MASS * G / k
-    keep(abs(found.steady[0] - at) < 1e-9, f"damped slide: it settles at {found.steady[0]:.9g} m, expected {at:.9g}")
+    keep(abs(modes.steady[0] - at) < 1e-9, f"damped slide: it settles at {modes.steady[0]:.9g} m, expected {at:.9g}")
 
 
 def flaps(code: MechanismAdapter) -> None:
@@ -209,8 +209,8 @@ def _parallelogram(springs: bool = False) -> mb.Mechanism:
 
 def closes(code: MechanismAdapter) -> None:
     """The bar of a parallelogram moves without rotation: √(g/l), for any position of its mass centre."""
-    found = _ask(code, _parallelogram(), {"A.rz": 0.2, "B.rz": 0.2, "C.rz": -0.2})
-    _are(found, [1j * np.sqrt(G / LENGTH)], "parallelogram")
+    modes = _ask(code, _parallelogram(), {"A.rz": 0.2, "B.rz": 0.2, "C.rz": -0.2})
+    _are(modes, [1j * np.sqrt(G / LENGTH)], "parallelogram")
 
 
 def curves(code: MechanismAdapter) -> None:
@@ -224,8 +224,8 @@ def curves(code: MechanismAdapter) -> None:
         ),
         gravity=DOWN,
     )
-    found = _ask(code, pinned, {"plane.x": 0.05, "plane.rz": 0.05})
-    _are(found, [1j * np.sqrt(MASS * G * LENGTH / (moment + MASS * LENGTH**2))], "bar on a loop joint")
+    modes = _ask(code, pinned, {"plane.x": 0.05, "plane.rz": 0.05})
+    _are(modes, [1j * np.sqrt(MASS * G * LENGTH / (moment + MASS * LENGTH**2))], "bar on a loop joint")
 
 
 def reversed_joint(code: MechanismAdapter) -> None:
@@ -260,11 +260,11 @@ def periodic(code: MechanismAdapter) -> None:
     if code.unsupported_mechanism(sagging):
         return
     try:
-        found = code.solve_mechanism(sagging, {})
+        answer = code.solve_mechanism(sagging, {})
     except CodeError:
         return
     raise BrokenError(
-        f"gravity across the axis of rotation: {_list(found.values)} 1/s, expected a refusal: it is periodic"
+        f"gravity across the axis of rotation: {_list(answer.values)} 1/s, expected a refusal: it is periodic"
     )
 
 
@@ -276,9 +276,9 @@ def falls(code: MechanismAdapter) -> None:
         gravity=DOWN,
     )
     try:
-        found = code.solve_mechanism(loose, {})
+        answer = code.solve_mechanism(loose, {})
     except CodeError:
         return
     raise BrokenError(
-        f"a mass that falls freely: {_list(found.values)} 1/s, expected a refusal: it has no steady state"
+        f"a mass that falls freely: {_list(answer.values)} 1/s, expected a refusal: it has no steady state"
     )

@@ -131,15 +131,15 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
             CaseError: if the table is missing or malformed.
         """
         blade, path = self.blade(name, folder), folder / self.file
-        columns, left = read_table(path, self.COLUMNS, self.OPTIONAL), ()
+        columns, unused_values = read_table(path, self.COLUMNS, self.OPTIONAL), ()
         for column, switch, dropped in (
             ("twist [deg]", "twisted = false", not self.twisted),
             ("cg_edge [m]", "centred = true", self.centred),
         ):
             if dropped and column in columns:
                 name_, _, unit = column.partition(" ")
-                left += unused(name_, columns[column], unit.strip("[]"), path, f"the case has {switch}")
-        return blade, left
+                unused_values += unused(name_, columns[column], unit.strip("[]"), path, f"the case has {switch}")
+        return blade, unused_values
 
     def file_read(self, name: str, folder: Path) -> BladeFile | None:
         """See ``Mounted``; None if the case leaves out the twist or replaces the table by pieces."""
@@ -229,8 +229,8 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
     Raises:
         CaseError: if the table is invalid; the message names file, line and column.
     """
-    found = files.table(path, absent="paths in a case are relative to its file; correct the name")
-    numbers, rows = zip(*found, strict=True)
+    table = files.table(path, absent="paths in a case are relative to its file; correct the name")
+    numbers, rows = zip(*table, strict=True)
     header = rows[0]
     for column in header:
         if column not in needed + optional:

@@ -46,10 +46,10 @@ def parse(text: str) -> Change:
     Raises:
         CaseError: if the form is invalid, the property unknown, or the factor not positive.
     """
-    found = FORM.fullmatch(text)
-    if not found:
+    match = FORM.fullmatch(text)
+    if not match:
         raise CaseError(f"--set {text}: not NAME=*FACTOR or NAME=VALUE: write it as in EI_flap=*1.1 or pitch=2.5")
-    name, factor, value = found[1], bool(found[2]), float(found[3])
+    name, factor, value = match[1], bool(match[2]), float(match[3])
     if name not in PROPERTIES:
         raise CaseError(f"--set {text}: {name!r} is not a property of a blade: {nearest(name, PROPERTIES)}")
     if not factor and name not in UNITS:

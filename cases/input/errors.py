@@ -35,11 +35,11 @@ class FilesMissingError(CaseError):
     """A case whose blade is in files that are not part of the package."""
 
 
-def nearest(word: str, known: Iterable[str]) -> str:
+def nearest(word: str, names: Iterable[str]) -> str:
     """Suggestion for an unknown word: the nearest known word, else all of them."""
-    known = tuple(known)
-    near = get_close_matches(word, known, 1, cutoff=0.5)
-    return f"did you mean {near[0]}?" if near else f"give one of {', '.join(known)}"
+    names = tuple(names)
+    near = get_close_matches(word, names, 1, cutoff=0.5)
+    return f"did you mean {near[0]}?" if near else f"give one of {', '.join(names)}"
 
 
 def rad_s(omega: float) -> str:

@@ -22,13 +22,13 @@ def names() -> tuple[str, ...]:
 
 def everything() -> tuple[dict[str, Case], dict[str, str]]:
     """The cases of the package by name, and the remedy for each whose blade files are not included and not found."""
-    found, absent = {}, {}
+    present, absent = {}, {}
     for name in names():
         try:
-            found[name] = load(name)
+            present[name] = load(name)
         except FilesMissingError as error:
             absent[name] = str(error).removeprefix(f"{name}: ")
-    return found, absent
+    return present, absent
 
 
 def mechanisms() -> tuple[str, ...]:
@@ -86,8 +86,8 @@ def load(name: str) -> Case:
         raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
     if name.endswith(".toml"):
         return read(Path(name))
-    known = (*names(), *mechanisms(), *turbines())
-    raise CaseError(f"case: {name!r} is not known: {nearest(name, known)}; or give the path of a .toml file")
+    existing = (*names(), *mechanisms(), *turbines())
+    raise CaseError(f"case: {name!r} is not known: {nearest(name, existing)}; or give the path of a .toml file")
 
 
 def select(name: str) -> Case:

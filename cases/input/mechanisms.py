@@ -220,12 +220,12 @@ def _by_coordinate(table: Mapping[str, Mapping[str, Any]], kind: type[T], path: 
 def _check_names(text: MechanismFile, mechanism: mb.Mechanism, guess: Mapping[str, float], path: str) -> None:
     """Reject coordinates without a joint, and anything core rejects before it has a state."""
     try:
-        known = compile_tree(at_time(mechanism, 0.0)).coordinates
+        coordinates = compile_tree(at_time(mechanism, 0.0)).coordinates
     except mb.MechanismError as error:
         raise CaseError(f"{path}: {error}") from error
     used = [("motions", m.coordinate) for m in mechanism.motions]
     used += [("coordinate_springs", s.coordinate) for s in mechanism.coordinate_springs]
     used += [("guess", name) for name in guess] + [("independent", name) for name in text.independent]
     for field, name in used:
-        if name not in known:
-            raise CaseError(f"{path}: {field}: {name!r}: no joint has this coordinate: {nearest(name, known)}")
+        if name not in coordinates:
+            raise CaseError(f"{path}: {field}: {name!r}: no joint has this coordinate: {nearest(name, coordinates)}")

@@ -196,11 +196,11 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         blade = convert(changed, CaseFile, where).blade
         name = f"{text.name}/{label}" if label else text.name
         try:
-            found, left = blade.read(name, folder)
+            as_given, unused_values = blade.read(name, folder)
             file = blade.file_read(name, folder)
         except BladeError as error:
             raise CaseError(f"{where}: blade: {error}") from error
-        variants.append(Variant(name, found, speeds, left, file))
+        variants.append(Variant(name, as_given, speeds, unused_values, file))
     return Case(path, text, tuple(variants))
 
 

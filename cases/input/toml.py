@@ -28,16 +28,16 @@ def document(path: Path, absent: str = "correct the path") -> dict[str, Any]:
         for k, line in enumerate(text.splitlines(), 1):
             if line.count(".") > DEEPEST and max(part.count(".") for part in re.split("[,=]", line)) > DEEPEST:
                 raise CaseError(f"{path}: line {k}: more than {DEEPEST} dots in one key or value: correct that line")
-        found = tomllib.loads(text)
+        content = tomllib.loads(text)
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: not TOML: {_short(str(error))}: correct that line") from error
     except RecursionError:
         raise _too_deep(path) from None
     except ValueError:  # Python's limit on the digits of an integer
         raise CaseError(f"{path}: integer too large: more than 4,300 digits; check the number") from None
-    if _depth(found) > DEEPEST:
+    if _depth(content) > DEEPEST:
         raise _too_deep(path)
-    return found
+    return content
 
 
 OR_A_NAME = "correct the path, or give the name of a case"

@@ -118,15 +118,15 @@ def measured(head: Head, omega: float, i: int, reference: Reference, datum: Datu
     base = reference.core.modes[i].estimate
     if base is None:
         return replace(cell, verdict="not applicable", reason="Southwell's own solver has no frequency to compare with")
-    found = Validation(
+    validation = Validation(
         base.value,
         datum.value,
         (base.uncertainty or 0.0) * base.value,
         datum.inputs * base.value,
         datum.data * datum.value,
     )
-    difference, uncertainty = found.relative
+    difference, uncertainty = validation.relative
     cell = replace(cell, reference=base.value, difference=difference)
     if base.uncertainty is None:
         return replace(cell, reason=f"not judged: u_num is unknown ({base.note})")
-    return replace(cell, uncertainty=uncertainty, reason=explained(found))
+    return replace(cell, uncertainty=uncertainty, reason=explained(validation))

@@ -117,14 +117,14 @@ def _standing(cell: Cell, target: float) -> Standing:
 
 
 def _worst(standings: Iterable[Standing]) -> Standing:
-    found = list(standings)
+    occurring = list(standings)
     order: tuple[Standing, ...] = ("disagrees", "open", "estimate", "known difference", "coarse", "agrees")
-    return next(s for s in order if s in found)
+    return next(s for s in order if s in occurring)
 
 
-def groups(found: Iterable[Witness]) -> list[tuple[Witness, ...]]:
+def groups(all_witnesses: Iterable[Witness]) -> list[tuple[Witness, ...]]:
     """Witnesses that agree and share nothing with core, grouped by common origin; each group counts once."""
-    counted = [w for w in found if w.kind in INDEPENDENT and w.standing == "agrees"]
+    counted = [w for w in all_witnesses if w.kind in INDEPENDENT and w.standing == "agrees"]
     out: list[list[Witness]] = []
     for witness in counted:
         linked = [group for group in out if any(_linked(witness, other) for other in group)]
@@ -148,8 +148,8 @@ class Short:
 
 def short(run: Run) -> list[Short]:
     """Blades confirmed by fewer groups than required."""
-    found = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
-    return [Short(s.case, there, s.groups) for s, there in found if there < s.groups]
+    counted = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
+    return [Short(s.case, confirmed_by, s.groups) for s, confirmed_by in counted if confirmed_by < s.groups]
 
 
 def engines(group: Sequence[Witness]) -> str:

@@ -27,10 +27,10 @@ def read(path: Path) -> Iterator[tuple[int, str, float, float, str, int, Estimat
     omega = _speed(path.with_suffix(".bmi"), path)
     none = True
     for line, text in enumerate(_text(path).splitlines(), 1):
-        if found := MODE.search(text):
+        if match := MODE.search(text):
             none = False
-            printed = found[2].upper().replace("D", "E")
-            yield line, "", omega, 0.0, "", int(found[1]), from_print(printed, 2 * math.pi)
+            printed = match[2].upper().replace("D", "E")
+            yield line, "", omega, 0.0, "", int(match[1]), from_print(printed, 2 * math.pi)
     if none:
         raise CaseError(f"{path}: no line `Mode No. 1 (freq = … Hz)`: give BModes' output, or a CSV file")
 
@@ -40,10 +40,10 @@ def _speed(bmi: Path, path: Path) -> float:
         raise CaseError(
             f"{path}: rotor speed: not in BModes' output, and {bmi.name} is not beside it: add it, or give a CSV"
         )
-    found = SPEED.search(_text(bmi))
-    if not found:
+    match = SPEED.search(_text(bmi))
+    if not match:
         raise CaseError(f"{bmi}: rot_rpm: missing: add the rotor speed, or give the frequencies in a CSV file")
-    return float(found[1].upper().replace("D", "E")) * math.pi / 30
+    return float(match[1].upper().replace("D", "E")) * math.pi / 30
 
 
 def _text(path: Path) -> str:

@@ -30,7 +30,7 @@ def unique(subjects: Sequence[Subject], codes: Sequence[Description], user_resul
             (f"{label(table)}/{name}", f"table {table}") for name in dict.fromkeys(s.name for s in load(table).series)
         ]
     columns += [(code.name, f"--codes {code.asked}") for code in codes]
-    columns += [(one.name, f"--add {one.path}") for one in user_results]
+    columns += [(results.name, f"--add {results.path}") for results in user_results]
     _once("code", columns, "leave one out, or give it another name")
 
 

@@ -32,18 +32,18 @@ from .user_results import Given, UserResults, at
 def columns(variant: Variant, user_results: Sequence[UserResults], compare: Compare) -> list[Column]:
     """A column for each file with results for a blade."""
     out = []
-    for one in user_results:
-        mine = [row for row in one.rows if row.blade in ("", variant.name)]
-        if not mine:
+    for results in user_results:
+        rows = [row for row in results.rows if row.blade in ("", variant.name)]
+        if not rows:
             continue
-        file = Path(one.path).name
-        if one.measured:
-            head = Head(variant.name, one.name, f"measured, in {file}", "measured", compare.target)
-            work = partial(_rows, _of_a_rig, head, variant.blade, compare, mine)
+        file = Path(results.path).name
+        if results.measured:
+            head = Head(variant.name, results.name, f"measured, in {file}", "measured", compare.target)
+            work = partial(_rows, _of_a_rig, head, variant.blade, compare, rows)
         else:
-            head = Head(variant.name, one.name, f"from {file}", "code", compare.target, "nothing")
-            work = partial(_rows_of_a_program, head, variant.blade, compare, mine)
-        out.append(Column(one.name, ALL_EFFECTS, head, work, due="somewhere"))
+            head = Head(variant.name, results.name, f"from {file}", "code", compare.target, "nothing")
+            work = partial(_rows_of_a_program, head, variant.blade, compare, rows)
+        out.append(Column(results.name, ALL_EFFECTS, head, work, due="somewhere"))
     return out
 
 
@@ -129,13 +129,13 @@ def _off(row: Given, omega: float) -> float:
 
 def _without_partner(head: Head, omega: float, row: Given, reference: Reference) -> Cell:
     """The cell of a row for a mode that the case does not compare."""
-    called, known = f"{row.family} {row.mode}".strip(), ", ".join(reference.core.names)
-    reason = f"line {row.line}: the case does not compare mode {called} at this speed; it compares {known}"
+    called, compared = f"{row.family} {row.mode}".strip(), ", ".join(reference.core.names)
+    reason = f"line {row.line}: the case does not compare mode {called} at this speed; it compares {compared}"
     return empty(head, omega, "not applicable", reason)
 
 
 def _place(row: Given, reference: Reference) -> int | None:
     """Index of a row's mode among the modes that the case compares; None if it is not compared."""
-    found: tuple[object, ...] = reference.core.names if row.family else reference.core.indices
-    wanted = f"{row.family} {row.mode}" if row.family else row.mode - 1
-    return found.index(wanted) if wanted in found else None
+    labels: tuple[object, ...] = reference.core.names if row.family else reference.core.indices
+    label = f"{row.family} {row.mode}" if row.family else row.mode - 1
+    return labels.index(label) if label in labels else None

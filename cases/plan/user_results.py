@@ -139,21 +139,21 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults
 
 def _header(header: Sequence[str], where: str) -> _Columns:
     """Names of the speed, frequency and uncertainty columns."""
-    known = (*SPEED, *FREQUENCY, *MEASURED, *OTHERS)
+    column_names = (*SPEED, *FREQUENCY, *MEASURED, *OTHERS)
     for column in header:
-        if column not in known:
-            raise CaseError(f"{where}: unknown column {column!r}: {nearest(column, known)}")
+        if column not in column_names:
+            raise CaseError(f"{where}: unknown column {column!r}: {nearest(column, column_names)}")
         if header.count(column) > 1:
             raise CaseError(f"{where}: column {column!r} occurs {header.count(column)} times: give it once")
-    found = []
+    columns = []
     for what, units in (("speed", SPEED), ("frequency", (*FREQUENCY, *MEASURED))):
-        mine = [column for column in header if column in units]
-        if len(mine) != 1:
-            raise CaseError(f"{where}: {len(mine)} columns of {what}: give exactly one of {', '.join(units)}")
-        found.append(mine[0])
+        given = [column for column in header if column in units]
+        if len(given) != 1:
+            raise CaseError(f"{where}: {len(given)} columns of {what}: give exactly one of {', '.join(units)}")
+        columns.append(given[0])
     if "mode" not in header:
         raise CaseError(f"{where}: column 'mode' is missing: name the mode of each frequency, as in flapwise 1, or 3")
-    speed, frequency = found
+    speed, frequency = columns
     allowed = ("uncertainty [%]", f"uncertainty {frequency.partition(' ')[2]}")
     sure = [column for column in header if column in UNCERTAINTY]
     if len(sure) > 1 or not set(sure) <= set(allowed):
@@ -170,9 +170,9 @@ def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaul
     def number(column: str, least: float = 0.0, most: float = LARGEST) -> float:
         text = row[column]
         if len(text) > DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
-            wanted = "a number above 0" if least else "a number, 0 or more"
+            required = "a number above 0" if least else "a number, 0 or more"
             raise CaseError(
-                f"{where}: {column}: {text!r} is not {wanted}, and at most {most:g}: correct it, with a decimal point"
+                f"{where}: {column}: {text!r} is not {required}, and at most {most:g}: correct it, with a decimal point"
             )
         return float(text)
 
@@ -235,12 +235,12 @@ def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[flo
         CaseError: if not; one line, as for ``read``.
     """
     taken = set(codes)
-    for one in user_results:
-        if one.name in taken:
-            raise CaseError(f"--add {one.name}: a code or another file has this name: give another")
-        taken.add(one.name)
-        for row in one.rows:
-            where = f"{one.path}: line {row.line}"
+    for results in user_results:
+        if results.name in taken:
+            raise CaseError(f"--add {results.name}: a code or another file has this name: give another")
+        taken.add(results.name)
+        for row in results.rows:
+            where = f"{results.path}: line {row.line}"
             if row.blade and row.blade not in speeds:
                 raise CaseError(f"{where}: blade: {row.blade!r} is not in this run: {nearest(row.blade, speeds)}")
             if not row.blade and len(speeds) != 1:

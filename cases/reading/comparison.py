@@ -79,7 +79,7 @@ def compare(blade: Blade, stations: Stations, stated: tuple[str, ...] = ()) -> t
     if not len(stations.s) or not np.isfinite(stations.s).all():
         raise ValueError("the second reading has no stations")
     nearest = np.abs(blade.stations[:, None] - stations.s).argmin(axis=0)
-    found = [
+    properties = [
         _worst("position of the stations", "m", blade.stations[nearest], stations.s, blade.length, stations.s),
         *_matrices(blade.stiffness[nearest], blade.mass[nearest], stations),
         _worst("twist", "rad", blade.twist[nearest], stations.twist, 1.0, stations.s),
@@ -91,7 +91,7 @@ def compare(blade: Blade, stations: Stations, stated: tuple[str, ...] = ()) -> t
         ),
         *_mounting(blade, stations, stated),
     ]
-    return tuple(p for p in found if p is not None)
+    return tuple(p for p in properties if p is not None)
 
 
 def _matrices(stiffness: Array, mass: Array, other: Stations) -> Iterator[Property | None]:
@@ -114,8 +114,8 @@ def _entries(
         )
     )
     worst = [_worst(name, unit, first[:, i, j], second[:, i, j], d[:, i] * d[:, j], s) for i, j in pairs]
-    known = [p for p in worst if p is not None]
-    return max(known, key=lambda p: p.difference) if known else None
+    entries = [p for p in worst if p is not None]
+    return max(entries, key=lambda p: p.difference) if entries else None
 
 
 def _mounting(blade: Blade, stations: Stations, stated: tuple[str, ...]) -> Iterator[Property | None]:
@@ -129,8 +129,8 @@ def _mounting(blade: Blade, stations: Stations, stated: tuple[str, ...]) -> Iter
 
 
 def _whole(name: str, unit: str, first: float, second: float, scale: float) -> Property | None:
-    found = _worst(name, unit, np.array([first]), np.array([second]), scale, np.zeros(1))
-    return None if found is None else Property(name, found.difference, 0, 0.0, found.first, found.second, unit)
+    largest = _worst(name, unit, np.array([first]), np.array([second]), scale, np.zeros(1))
+    return None if largest is None else Property(name, largest.difference, 0, 0.0, largest.first, largest.second, unit)
 
 
 def _worst(name: str, unit: str, first: Array, second: Array, scale: float | Array, s: Array) -> Property | None:

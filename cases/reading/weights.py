@@ -134,7 +134,7 @@ def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rot
         rotary: whether the code has the moments of inertia of the sections.
     """
     rows = [_differences(blade, stations, model, rotary) for model in models]
-    found, expected, last = rows[-1]
+    of_model, expected, last = rows[-1]
     change, removed, ratio = np.zeros(len(last)), np.zeros(len(last)), 2.0
     if len(models) == 2 and models[1].elements > models[0].elements:
         change, ratio = last - rows[0][2], models[1].elements / models[0].elements
@@ -148,7 +148,7 @@ def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rot
             difference=float(difference[k]),
             finest=float(last[k]),
             change=float(change[k]),
-            model=float(found[k]),
+            model=float(of_model[k]),
             stations=float(expected[k]),
             unit=unit,
             ratio=ratio,
@@ -162,7 +162,7 @@ def _differences(blade: Blade, stations: Stations, model: Fingerprint, rotary: b
     """Values (5 or 26,) of the model and of the stations, and their relative differences."""
     mounted = Mounted(stations, blade.hub_radius, blade.precone, blade.pitch, blade.kinks)
     mass, first, inertia = weigh(mounted, blade.tip_mass, model.start, rotary)
-    found = np.array([model.mass, *model.first_moments, model.rotor_inertia])
+    of_model = np.array([model.mass, *model.first_moments, model.rotor_inertia])
     expected = np.array([mass, *first, inertia])
     moment = mass * (blade.hub_radius + blade.length)
     scale = np.array([mass, moment, moment, moment, inertia])
@@ -170,9 +170,9 @@ def _differences(blade: Blade, stations: Stations, model: Fingerprint, rotary: b
         bent = bend(mounted)
         size = np.sqrt(np.diagonal(bent))
         sizes = np.outer(size, size)[UPPER]
-        found, expected = np.append(found, model.flexibility), np.append(expected, bent[UPPER])
+        of_model, expected = np.append(of_model, model.flexibility), np.append(expected, bent[UPPER])
         scale = np.append(scale, np.where(sizes > 0, sizes, 1.0))  # rigid strains: both are zero
-    return found, expected, (found - expected) / scale
+    return of_model, expected, (of_model - expected) / scale
 
 
 ELEMENTS = 16

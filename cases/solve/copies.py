@@ -95,11 +95,11 @@ def _differences(
     """
     largest, error = 0.0, 0.0
     for omega, reference, answer in answers:
-        (mine,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
+        (ours,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
         indices = list(reference.core.indices)
-        if not isinstance(mine, Modes) or min(len(mine.frequencies), len(answer.frequencies)) <= max(indices):
+        if not isinstance(ours, Modes) or min(len(ours.frequencies), len(answer.frequencies)) <= max(indices):
             return None
-        values = mine.frequencies[indices]
+        values = ours.frequencies[indices]
         largest = max(largest, float(np.abs(answer.frequencies[indices] / values - 1.0).max()))
         if largest > DIGITS:
             return None

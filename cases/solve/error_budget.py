@@ -70,10 +70,10 @@ def solve(case: Case, variant: Variant) -> list[BudgetEntry]:
     if right is None:
         return []
     rows = []
-    for cause, part, found in _altered(blade, omega, source.elements if source else ELEMENTS, count):
-        if found is not None:
-            mine = changed(right, found, blade, compare)
-            rows += [BudgetEntry(variant.name, omega, mode.name, cause, part, mode.change) for mode in mine]
+    for cause, part, altered in _altered(blade, omega, source.elements if source else ELEMENTS, count):
+        if altered is not None:
+            changes = changed(right, altered, blade, compare)
+            rows += [BudgetEntry(variant.name, omega, mode.name, cause, part, mode.change) for mode in changes]
     return rows
 
 
@@ -132,14 +132,14 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
     out = []
     for omega, name in dict.fromkeys((r.omega, r.mode) for r in rows):
         here = [c for c in cells if c.omega == omega and c.uncertainty is not None and c.name == name]
-        known = [c for c in here if c.verdict in ("pass", "known difference")]
+        comparable = [c for c in here if c.verdict in ("pass", "known difference")]
         for cause, part, role in (
             ("discretisation", "codes, refined", "code"),
             ("rounding", "printed digits", "table"),
         ):
-            sizes = [c.uncertainty or 0.0 for c in known if c.role == role]
+            sizes = [c.uncertainty or 0.0 for c in comparable if c.role == role]
             if role == "code":  # an error bound given by a code is not a discretisation error
-                sizes = [c.uncertainty or 0.0 for c in known if c.role == role and c.order is not None]
+                sizes = [c.uncertainty or 0.0 for c in comparable if c.role == role and c.order is not None]
             if sizes:
                 out.append(BudgetEntry(case, omega, name, cause, part, max(sizes), bound=True))
     return out

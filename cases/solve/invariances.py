@@ -72,7 +72,7 @@ class Invariances:
         difference = second / first.frequencies - 1.0
         excess = np.abs(difference) - error
         worst = int(np.argmax(excess))
-        found = replace(
+        filled = replace(
             row,
             value=float(second[worst]),
             reference=float(first.frequencies[worst]),
@@ -83,11 +83,13 @@ class Invariances:
             change = (
                 f"mode {worst + 1} changes by {percent(float(difference[worst]))} ± {unsigned(float(error[worst]))}"
             )
-            return replace(found, verdict="fail", reason=f"{invariance.name}: {change}: wrong: {invariance.convention}")
+            return replace(
+                filled, verdict="fail", reason=f"{invariance.name}: {change}: wrong: {invariance.convention}"
+            )
         if error.max() > MAX_UNCERTAINTY:
             size = unsigned(float(error.max()))
-            return replace(found, verdict="inconclusive", reason=f"{invariance.name}: known to {size} only")
-        return replace(found, verdict="pass")
+            return replace(filled, verdict="inconclusive", reason=f"{invariance.name}: known to {size} only")
+        return replace(filled, verdict="pass")
 
     def _solved(self, invariance: Invariance, as_given: list[Modes]) -> tuple[Modes, Array, Array]:
         """The modes, the frequencies of the other description, and the relative uncertainty of their difference, (m,).

@@ -61,8 +61,8 @@ def of_reading(case: str, file: BladeFile | None, blade: Blade) -> tuple[list[Pr
 
 def of_core(case: str, blade: Blade, stations: Stations, version: str) -> list[PropertyCheck]:
     """The rows of the model that core assembles."""
-    found = weighing.weights(blade, stations, [weighing.of_core(blade)])
-    return _rows(case, CORE, version, found)
+    weights = weighing.weights(blade, stations, [weighing.of_core(blade)])
+    return _rows(case, CORE, version, weights)
 
 
 @dataclass(frozen=True)
@@ -95,17 +95,17 @@ class Weighing:
         code, version = self.description, self.description.version or ""
         models: list[Fingerprint] = []
         for elements in code.levels:
-            (found,) = fingerprints(code.asked, self.blade, [elements], self.limits, version)
-            if not isinstance(found, Fingerprint) and len(models) == 2:
+            (model,) = fingerprints(code.asked, self.blade, [elements], self.limits, version)
+            if not isinstance(model, Fingerprint) and len(models) == 2:
                 break  # a finer mesh is not within the limits: the verdict is that of these two
-            if not isinstance(found, Fingerprint):
-                reason = found.reason if isinstance(found, Failure) else "the code reports no mass"
-                kind = "not applicable" if found is None or found.kind == "unsupported" else "not run"
+            if not isinstance(model, Fingerprint):
+                reason = model.reason if isinstance(model, Failure) else "the code reports no mass"
+                kind = "not applicable" if model is None or model.kind == "unsupported" else "not run"
                 row = PropertyCheck(
                     self.case, code.name, version, "fingerprint", "", None, None, "", None, weighing.TARGET, kind
                 )
                 return [_because(row, reason)]
-            models = [*models[-1:], found]
+            models = [*models[-1:], model]
             if weighing.enough(self.blade, self.stations, models, code.effects.rotary_inertia):
                 break
         weights = weighing.weights(self.blade, self.stations, models, code.effects.rotary_inertia)
@@ -120,14 +120,16 @@ def weighings(
     return [Weighing(case, blade, stations, code, limits) for code in ready]
 
 
-def _rows(case: str, code: str, version: str, found: Sequence[weighing.Weight], note: str = "") -> list[PropertyCheck]:
+def _rows(
+    case: str, code: str, version: str, weights: Sequence[weighing.Weight], note: str = ""
+) -> list[PropertyCheck]:
     return [
         PropertyCheck(
             *(case, code, version, "fingerprint", w.name, w.model, w.stations, w.unit, w.difference, weighing.TARGET),
             w.verdict,
             note if w.verdict == "pass" else w.line,
         )
-        for w in found
+        for w in weights
     ]
 
 

@@ -45,21 +45,21 @@ def data() -> dict[str, Any]:
     return tomllib.loads((files(str(__package__)) / "sandia34_measured.toml").read_text(encoding="utf-8"))
 
 
-def named(found: mb.Solution) -> dict[str, float]:
+def named(solution: mb.Solution) -> dict[str, float]:
     """Frequencies (Hz) of a solution by mode name."""
-    state = found.linear.state.kinematics
-    bodies = [b.name for b in found.linear.tree.mechanism.bodies]
+    state = solution.linear.state.kinematics
+    bodies = [b.name for b in solution.linear.tree.mechanism.bodies]
     number = sum(name.startswith("right ") for name in bodies)
     sides = [np.array([bodies.index(f"{side} {k}") for k in range(1, number + 1)]) for side in ("right", "left")]
     kinds = []
-    for shape in found.shapes:
+    for shape in solution.shapes:
         twist = state.B @ shape  # of every body, taken at the ground's origin
         right, left = (twist[s, :3] + np.cross(twist[s, 3:], state.poses[s, :3, 3]) for s in sides)
         half_turn = left * [-1.0, -1.0, 1.0]
         symmetric = np.linalg.norm(right + half_turn) > np.linalg.norm(right - half_turn)
         across = np.linalg.norm(right[:, 1])
         kinds.append(("E" if across > np.linalg.norm(right[:, [0, 2]]) else "F") + ("S" if symmetric else "A"))
-    return dict(zip(numbered(kinds), (found.frequencies / (2.0 * np.pi)).tolist(), strict=True))
+    return dict(zip(numbered(kinds), (solution.frequencies / (2.0 * np.pi)).tolist(), strict=True))
 
 
 def solved(rpm: float, how: Variation) -> dict[str, float]:
@@ -90,10 +90,10 @@ def changes(base: dict[str, float], other: dict[str, float]) -> dict[str, float]
     """
     out = {}
     for symmetry in "SA":
-        mine, theirs = ([(n, f) for n, f in at.items() if n.split()[0].endswith(symmetry)] for at in (base, other))
-        found = sorted(f for _, f in theirs)
-        for k, (name, f) in enumerate(sorted(mine, key=lambda mode: mode[1])):
-            out[name] = abs(found[k] - f) if k < len(found) else np.inf
+        ours, theirs = ([(n, f) for n, f in at.items() if n.split()[0].endswith(symmetry)] for at in (base, other))
+        changed = sorted(f for _, f in theirs)
+        for k, (name, f) in enumerate(sorted(ours, key=lambda mode: mode[1])):
+            out[name] = abs(changed[k] - f) if k < len(changed) else np.inf
     return out
 
 
@@ -124,8 +124,8 @@ def simulated() -> Simulated:
         inputs([base[SPEEDS.index(rpm)], *(solved(rpm, how) for how in variations()[1:])]) for rpm in VARIED_AT
     )
     fine = solved(0.0, Variation(refine=2))
-    left = 2.0**ORDER / (2.0**ORDER - 1.0)
-    return Simulated(base, varied, {name: left * d / base[0][name] for name, d in changes(base[0], fine).items()})
+    richardson = 2.0**ORDER / (2.0**ORDER - 1.0)
+    return Simulated(base, varied, {name: richardson * d / base[0][name] for name, d in changes(base[0], fine).items()})
 
 
 def at_speed(values: Sequence[float], rpm: float) -> tuple[float, float]:
@@ -145,8 +145,8 @@ def points(model: Simulated) -> tuple[Point, ...]:
     out = []
     for line in data()["lines"]:
         for rpm, measured in line["points"]:
-            found = [at_speed([at[name] for at in model.base], rpm) for name in line["of"]]
-            all_, between = [f for f, _ in found], max(u for _, u in found)
+            at_modes = [at_speed([at[name] for at in model.base], rpm) for name in line["of"]]
+            all_, between = [f for f, _ in at_modes], max(u for _, u in at_modes)
             S = float(np.mean(all_))
             apart = 0.5 * (max(all_) - min(all_))  # which of a pair was measured is not known
             discretised = max(model.numerical[name] for name in line["of"]) * S

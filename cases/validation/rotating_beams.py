@@ -79,12 +79,12 @@ def solved(blade: Blade, rpm: float) -> dict[str, tuple[float, float]]:
     Raises:
         ValueError: if there is no steady state.
     """
-    (found,) = converged(blade, [rpm * RPM], Compare(modes=COUNT), ALL_EFFECTS)
-    if isinstance(found, Failure):
-        raise ValueError(f"{blade.name}: {rpm:g} rpm: {found.reason}")
-    estimates = [s.estimate for s in found.modes]
+    (reference,) = converged(blade, [rpm * RPM], Compare(modes=COUNT), ALL_EFFECTS)
+    if isinstance(reference, Failure):
+        raise ValueError(f"{blade.name}: {rpm:g} rpm: {reference.reason}")
+    estimates = [s.estimate for s in reference.modes]
     values = [(e.value / (2.0 * np.pi), e.uncertainty or 0.0) if e else (np.inf, 0.0) for e in estimates]
-    return dict(zip(found.names, values, strict=True))
+    return dict(zip(reference.names, values, strict=True))
 
 
 def points(name: str) -> Iterator[Point]:

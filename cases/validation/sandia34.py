@@ -167,10 +167,10 @@ def mechanism(omega: float, how: Variation | None = None) -> mb.Mechanism:
         joints.append(mb.Joint(f"{name} top", "fixed", f"tower {last}", f"{name} {len(blade.sections)}", cut=True))
         for where, z in zip(("low", "high"), data()["struts"], strict=True):
             strut = all_[f"{where} {name} strut"]
-            there = int(np.abs(blade.nodes[:, 2] - z).argmin())
+            nearest = int(np.abs(blade.nodes[:, 2] - z).argmin())
             joints.append(
                 mb.Joint(
-                    f"{where} {name} end", "fixed", f"{name} {there}", f"{strut.name} {len(strut.sections)}", cut=True
+                    f"{where} {name} end", "fixed", f"{name} {nearest}", f"{strut.name} {len(strut.sections)}", cut=True
                 )
             )
     return mb.Mechanism(

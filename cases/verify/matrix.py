@@ -127,7 +127,7 @@ def run(
                     weighed = [executor.submit(weigh) for task in plans for weigh in task.properties.tasks]
                 done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
-        reasons = _diagnosed(plans, rows, executor, {one.name for one in user_results}) if parts else ()
+        reasons = _diagnosed(plans, rows, executor, {results.name for results in user_results}) if parts else ()
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
         checks = [row for task in plans for row in task.properties.rows]
         checks += [row for future in weighed for row in future.result()]
@@ -233,7 +233,10 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
 def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:
     """Versions of Python, the packages core needs, each code, and files of results."""
     ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
-    files = {one.name: f"{'measured,' if one.measured else 'results'} in {Path(one.path).name}" for one in user_results}
+    files = {
+        results.name: f"{'measured,' if results.measured else 'results'} in {Path(results.path).name}"
+        for results in user_results
+    }
     theirs = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}
     return {"python": python_version(), **ours, **theirs, **files}
 

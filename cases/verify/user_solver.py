@@ -91,8 +91,8 @@ def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
         lambda runs: _answers(solver, variant.blade, runs), list(by_speed), refining, count, lambda w, _: by_speed[w]
     )
     cells, levels = without, []
-    for (omega, reference), one in zip(core, refinements, strict=True):
-        new = refined(head, omega, reference, one, refining.order, refining.bracket)
+    for (omega, reference), refinements_at in zip(core, refinements, strict=True):
+        new = refined(head, omega, reference, refinements_at, refining.order, refining.bracket)
         cells += new[0]
         levels += new[1]
     return cells + _printed(cells, variant, compare, solved), levels
@@ -102,9 +102,9 @@ def _answers(solver: UserSolver, blade: Blade, runs: Sequence[Asked]) -> list[An
     """Answers of the solver; an invalid return value becomes a failure, an exception propagates to the user."""
     out: list[Answer] = []
     for omega, elements, count in runs:
-        found = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
+        answer = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
         try:
-            out.append(of_blade(_modes(omega, elements, *found, exact=not solver.refines)))
+            out.append(of_blade(_modes(omega, elements, *answer, exact=not solver.refines)))
         except (TypeError, ValueError) as error:
             out.append(Failure("nonsense", f"not (frequencies, shapes): {error}"))
     return out
@@ -138,10 +138,10 @@ def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: 
         head = Head(variant.name, table.name, "", "table", compare.target, "nothing")
         printed, _ = published_tables.rows(head, table, variant.blade, None, core)
         agreed = {(c.omega, c.mode): c for c in printed if c.verdict == "pass"}
-        for mine in cells:
-            number = agreed.get((mine.omega, mine.mode))
-            if number and mine.family == number.family and _agrees(mine.reference, number):
-                out.append(_compared(mine, number, number.value or 0.0))
+        for ours in cells:
+            number = agreed.get((ours.omega, ours.mode))
+            if number and ours.family == number.family and _agrees(ours.reference, number):
+                out.append(_compared(ours, number, number.value or 0.0))
     return out
 
 
@@ -152,17 +152,17 @@ def _agrees(reference: float | None, number: Cell) -> bool:
     return judge(reference / number.value - 1.0, number.uncertainty, number.target)[0] == "pass"
 
 
-def _compared(mine: Cell, number: Cell, printed: float) -> Cell:
+def _compared(ours: Cell, number: Cell, printed: float) -> Cell:
     """One frequency against one printed number; a known difference of the frequency remains known."""
-    difference = (mine.value or 0.0) / printed - 1.0
-    unsure = None if mine.uncertainty is None else mine.uncertainty + (number.uncertainty or 0.0)
-    verdict, reason = judge(difference, unsure, max(mine.target, number.target))
-    if verdict != "pass" and mine.verdict == "known difference":
-        verdict, reason = mine.verdict, mine.reason
-    name = f"{mine.code}, {number.code}"
+    difference = (ours.value or 0.0) / printed - 1.0
+    unsure = None if ours.uncertainty is None else ours.uncertainty + (number.uncertainty or 0.0)
+    verdict, reason = judge(difference, unsure, max(ours.target, number.target))
+    if verdict != "pass" and ours.verdict == "known difference":
+        verdict, reason = ours.verdict, ours.reason
+    name = f"{ours.code}, {number.code}"
     return replace(
-        mine, code=name, role="table", reference=printed, difference=difference, uncertainty=unsure,
-        target=max(mine.target, number.target), verdict=verdict, reason=reason,
+        ours, code=name, role="table", reference=printed, difference=difference, uncertainty=unsure,
+        target=max(ours.target, number.target), verdict=verdict, reason=reason,
     )  # fmt: skip
 
 
@@ -173,7 +173,7 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
     """
     if cell.value is None or cell.reference is None or cell.difference is None:
         return ""
-    found: list[tuple[float, str]] = []
+    candidates: list[tuple[float, str]] = []
     for wrong in wrongs:
         for m in wrong.modes:
             same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < SAME_MODE
@@ -181,5 +181,5 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
                 rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):
                     likeness = f"as core with this fault: {wrong.fault} ({percent(m.change)}; {unsigned(rest)} from it)"
-                    found.append((abs(rest), likeness))
-    return min(found)[1] if found else ""
+                    candidates.append((abs(rest), likeness))
+    return min(candidates)[1] if candidates else ""

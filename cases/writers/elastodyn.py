@@ -95,5 +95,5 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
 
 def _given(given: Sequence[Unused], name: str, count: int) -> tuple[float, ...]:
     """The values of a quantity that is carried over; zeros if it is not given, or not for these stations."""
-    found = [u.values for u in given if u.name == name and len(u.values) == count]
-    return found[0] if found else (0.0,) * count
+    columns = [u.values for u in given if u.name == name and len(u.values) == count]
+    return columns[0] if columns else (0.0,) * count

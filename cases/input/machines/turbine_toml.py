@@ -38,16 +38,16 @@ def holds(path: Path) -> Literal["turbine", "tower"] | None:
     Raises:
         CaseError: it is not TOML.
     """
-    found = toml.document(path)
-    if not isinstance(found.get("tower"), dict):
+    content = toml.document(path)
+    if not isinstance(content.get("tower"), dict):
         return None
-    return "turbine" if any(name in found for name in ROTOR) else "tower"
+    return "turbine" if any(name in content for name in ROTOR) else "tower"
 
 
 def _data(path: Path) -> MachineData:
-    found = toml.document(path)
-    toml.finite(found, str(path))
-    return toml.convert(found, MachineData, str(path))
+    content = toml.document(path)
+    toml.finite(content, str(path))
+    return toml.convert(content, MachineData, str(path))
 
 
 def tower(path: Path) -> tuple[Tower, Source]:

@@ -50,7 +50,7 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
     deck = path.suffix.lower() not in _BY_SUFFIX
     with files.reading(path, *([mount.main] if mount and mount.main else []), deck=deck):
         try:
-            found = recognise(path)(path, mount)
+            read = recognise(path)(path, mount)
         except (
             BladeError
         ) as error:  # of a value that a reader adds to a valid blade, such as the tip mass of a main file
@@ -61,19 +61,18 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
             ("subset", mount.subset, "HAWC2"),
             ("offsets", mount.offsets, "ElastoDyn"),
         ):
-            if given is not None and found.source.format != format:
-                raise CaseError(f"{path}: {option}: {found.source.format} has none, {format} has: leave it out")
-    if not named(found.blade.name):
+            if given is not None and read.source.format != format:
+                raise CaseError(f"{path}: {option}: {read.source.format} has none, {format} has: leave it out")
+    blade = read.blade
+    if not named(blade.name):
+        raise CaseError(f"{path}: name: {blade.name[:LONGEST]!r}: a name is one line of at most {LONGEST} characters")
+    if np.abs(blade.twist).max() > np.pi:
+        k = int(np.abs(blade.twist).argmax())
         raise CaseError(
-            f"{path}: name: {found.blade.name[:LONGEST]!r}: a name is one line of at most {LONGEST} characters"
-        )
-    if np.abs(found.blade.twist).max() > np.pi:
-        k = int(np.abs(found.blade.twist).argmax())
-        raise CaseError(
-            f"{path}: twist: {np.degrees(found.blade.twist[k]):.6g} degrees at {found.blade.stations[k]:g} m: more than half a "
+            f"{path}: twist: {np.degrees(blade.twist[k]):.6g} degrees at {blade.stations[k]:g} m: more than half a "
             "turn: check the unit and the column"
         )
-    return found
+    return read
 
 
 def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:

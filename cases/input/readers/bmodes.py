@@ -68,12 +68,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     start = own["n_secs"][0] + 1
     while start < len(text.lines) and not leading(text.lines[start]):
         start += 1
-    found = table(text, start, count, COLUMNS)
-    found.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
-    found.positive("flp_iner", "edge_iner", zero=True)
-    eta = fractions(found, "sec_loc")
+    sections = table(text, start, count, COLUMNS)
+    sections.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
+    sections.positive("flp_iner", "edge_iner", zero=True)
+    eta = fractions(sections, "sec_loc")
     by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
-    p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
+    p = {name: sections[name] * by.get(name, 1.0) for name in COLUMNS}
 
     tip, hub_radius = value(main, named, "radius"), value(main, named, "hub_rad")
     if tip <= hub_radius:

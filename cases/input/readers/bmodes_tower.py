@@ -59,12 +59,12 @@ def read(path: Path) -> tuple[Tower, Source]:
     start = own["n_secs"][0] + 1
     while start < len(sections.lines) and not leading(sections.lines[start]):
         start += 1
-    found = table(sections, start, count, COLUMNS)
-    found.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
-    found.positive("flp_iner", zero=True)
-    jumps = _jumps(found["sec_loc"])
+    rows = table(sections, start, count, COLUMNS)
+    rows.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
+    rows.positive("flp_iner", zero=True)
+    jumps = _jumps(rows["sec_loc"])
     by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
-    p = {name: found[name] * by.get(name, 1.0) for name in COLUMNS}
+    p = {name: rows[name] * by.get(name, 1.0) for name in COLUMNS}
     draft = value(main, named, "draft") if "draft" in named else 0.0
     height = value(main, named, "radius") + draft - value(main, named, "hub_rad")
     if height <= 0:
@@ -74,7 +74,7 @@ def read(path: Path) -> tuple[Tower, Source]:
     try:
         beam = Blade(
             name=path.stem,
-            stations=fractions(found, "sec_loc") * height,
+            stations=fractions(rows, "sec_loc") * height,
             stiffness=section_stiffness(p["axial_stff"], p["tor_stff"], p["flp_stff"], p["flp_stff"]),
             mass=section_mass(p["mass_den"], p["flp_iner"], p["flp_iner"]),
             twist=np.zeros(count),
@@ -170,10 +170,10 @@ def _wires(main: Text, named: Named, height: float) -> tuple[tuple[float, Array]
 def _row(main: Text, named: Named, name: str, count: int) -> list[float]:
     """The first ``count`` numbers of the line that ends in a name."""
     k = next((k for k, line in enumerate(main.lines) if f"{name}:" in line or f" {name} " in line), None)
-    found = leading(main.lines[k]) if k is not None else []
-    if k is None or len(found) < count or not np.isfinite(found[:count]).all():
+    numbers = leading(main.lines[k]) if k is not None else []
+    if k is None or len(numbers) < count or not np.isfinite(numbers[:count]).all():
         raise CaseError(f"{main.path}: {name}: give {count} finite numbers, one for each attachment of wires")
-    return found[:count]
+    return numbers[:count]
 
 
 def _soil(main: Text, named: Named, height: float) -> Array | None:

@@ -73,17 +73,17 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         subset = subset or stated_subset
         text = text or load(file)
     assert text is not None
-    found = _subset(text, subset)
-    r = found["r"]
+    columns = _subset(text, subset)
+    r = columns["r"]
     r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
-    found.need(
+    columns.need(
         np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
     )
     rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
-    found.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
+    columns.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
-    stiffness, mass = _stiffness(found), _mass(found)
+    stiffness, mass = _stiffness(columns), _mass(columns)
     if htc is not None and body is not None:
         stations, curve, twist, at, (bent, swung) = hawc2_htc.half_chords(body, r)
         stiffness, mass = _between(r, stiffness, at), _between(r, mass, at)
@@ -117,9 +117,11 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    left = hawc2_htc.left(body) if body is not None else ()
+    unused_values = hawc2_htc.left(body) if body is not None else ()
     return Reading(
-        blade, Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), left), unstated=unstated
+        blade,
+        Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), unused_values),
+        unstated=unstated,
     )
 
 
@@ -143,10 +145,10 @@ def _between(r: Array, values: Array, at: Array) -> Array:
 def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     heads, current = {}, 1
     for k, line in enumerate(text.lines):
-        if found := _SET.match(line):
-            current = int(found[1])
-        elif found := _SUBSET.match(line):
-            heads[current, int(found[1])] = (k, int(found[2]))
+        if match := _SET.match(line):
+            current = int(match[1])
+        elif match := _SUBSET.match(line):
+            heads[current, int(match[1])] = (k, int(match[2]))
     if subset is None and len(heads) > 1:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
         raise CaseError(
@@ -159,10 +161,12 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     k, count = heads[subset]
     first = next((j for j in range(k + 1, len(text.lines)) if leading(text.lines[j])), len(text.lines))
     wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2
-    found = table(text, first, count, FULL if wide else PLAIN)
-    found.positive("m", *(("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "A")))
-    found.positive("ri_x", "ri_y", *(() if wide else ("k_x", "k_y")), zero=True)
-    return found
+    columns = table(text, first, count, FULL if wide else PLAIN)
+    columns.positive(
+        "m", *(("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "A"))
+    )
+    columns.positive("ri_x", "ri_y", *(() if wide else ("k_x", "k_y")), zero=True)
+    return columns
 
 
 def _stiffness(p: Table) -> Array:

@@ -33,5 +33,5 @@ def description(text: Text) -> str | None:
     for matches, what in MARKS:
         if matches(text):
             return what
-    module = next((found[1] for line in text.lines[:3] if (found := OPENFAST.match(line))), None)
+    module = next((match[1] for line in text.lines[:3] if (match := OPENFAST.match(line))), None)
     return MODULE_FILE.format(module) if module else None

@@ -235,8 +235,8 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         named = os.environ.get(self.files) if self.files else None
         with files.reading_also(Path(named)) if named else nullcontext():
             path = self._path(name, folder)
-            found = reading(path, mount)
-        return BladeFile(path, found.blade, found.source, mount), found.unstated
+            blade_reading = reading(path, mount)
+        return BladeFile(path, blade_reading.blade, blade_reading.source, mount), blade_reading.unstated
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade, as ``read``."""
@@ -248,9 +248,9 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         named = os.environ.get(self.files)
         if named and os.path.isfile(path := Path(named) / self.file):
             return path
-        found = f"not in {self.files}={named}" if named else f"{self.files} is not set"
+        cause = f"not in {self.files}={named}" if named else f"{self.files} is not set"
         raise FilesMissingError(
-            f"{name}: file: {self.file}: {found}: set it to a folder with this file, which does not come with Southwell"
+            f"{name}: file: {self.file}: {cause}: set it to a folder with this file, which does not come with Southwell"
         )
 
 

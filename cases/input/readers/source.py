@@ -40,8 +40,8 @@ class Unused:
 
 def unused(name: str, values: Iterable[float], unit: str, file: Path, why: str) -> tuple[Unused, ...]:
     """The quantity as a tuple of one; empty if every value is zero."""
-    found = tuple(float(value) for value in values)
-    return (Unused(name, found, unit, file, why),) if any(found) else ()
+    numbers = tuple(float(value) for value in values)
+    return (Unused(name, numbers, unit, file, why),) if any(numbers) else ()
 
 
 @dataclass(frozen=True)

@@ -34,8 +34,8 @@ class BladeFile(Struct, frozen=True, forbid_unknown_fields=True):
 
 def matches_format(path: Path) -> bool:
     """Whether a TOML file describes a blade, not a case or a mechanism."""
-    found = document(path, OR_A_NAME)
-    return "blade" in found and "speeds" not in found and "compare" not in found
+    content = document(path, OR_A_NAME)
+    return "blade" in content and "speeds" not in content and "compare" not in content
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
@@ -64,13 +64,13 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             f"{path}: blade.kind: 'dimensionless': it has no metres or seconds: make it a case with gamma speeds"
         )
     try:
-        blade, left = text.blade.read(text.name, path.parent)
+        blade, unused_values = text.blade.read(text.name, path.parent)
     except CaseError as error:
         raise error if str(error).startswith(str(path.parent)) else CaseError(f"{path}: {error}") from error
     except BladeError as error:
         raise CaseError(f"{path}: blade: {error}") from error
     notes = (*(note for note in (text.title, text.source) if note), *_rigid(blade))
-    return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes, left))
+    return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes, unused_values))
 
 
 def _rigid(blade: Blade) -> tuple[str, ...]:

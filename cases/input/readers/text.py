@@ -89,26 +89,26 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
     """
     if k >= len(text.lines):
         raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: truncated? give it whole")
-    found, words = leading(text.lines[k]), tokens(text.lines[k])
-    if len(found) != len(columns):
-        rest = words[len(found) :]
+    numbers, words = leading(text.lines[k]), tokens(text.lines[k])
+    if len(numbers) != len(columns):
+        rest = words[len(numbers) :]
         cause = (
             f"{rest[0]!r} is not a number:"
-            if rest and len(found) < len(columns)
+            if rest and len(numbers) < len(columns)
             else "commas in place of decimal points?"
-            if len(found) == 2 * len(columns)
+            if len(numbers) == 2 * len(columns)
             else "a column missing or too many?"
         )
         raise CaseError(
-            f"{text.at(k)}: {len(found)} numbers instead of {len(columns)} ({', '.join(columns[:6])}"
+            f"{text.at(k)}: {len(numbers)} numbers instead of {len(columns)} ({', '.join(columns[:6])}"
             f"{', …' if len(columns) > 6 else ''}): {cause} correct the line"
         )
-    for name, value, written in zip(columns, found, words, strict=False):
+    for name, value, written in zip(columns, numbers, words, strict=False):
         if not math.isfinite(value):
             raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number; a gap in the data? give a value")
         if not believable(value):
             raise CaseError(f"{text.at(k)}: {name}: {written}: implausibly large; check the exponent")
-    return found
+    return numbers
 
 
 def believable(value: float) -> bool:
@@ -171,22 +171,26 @@ def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
     return Table(text, dict(zip(columns, values.T, strict=True)), tuple(lines))
 
 
-def fractions(found: Table, name: str) -> Array:
+def fractions(sections: Table, name: str) -> Array:
     """The stations as fractions of the length: from 0 to 1, strictly increasing.
 
     Raises:
         CaseError: naming the line of the first invalid fraction.
     """
-    eta = found[name]
+    eta = sections[name]
     if len(eta) < 2:
-        raise CaseError(f"{found.text.at(found.lines[0])}: {len(eta)} station: a blade needs at least a root and a tip")
+        raise CaseError(
+            f"{sections.text.at(sections.lines[0])}: {len(eta)} station: a blade needs at least a root and a tip"
+        )
     for k in (0, -1):
         eta[k] = round(eta[k]) if abs(eta[k] - round(eta[k])) <= ROUNDING else eta[k]
     ends = np.ones(len(eta), bool)
     ends[0], ends[-1] = eta[0] == 0, eta[-1] == 1
-    found.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")
+    sections.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")
     rises = np.concatenate([[True], np.diff(eta) > ROUNDING])
-    found.need(rises, name, eta, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
+    sections.need(
+        rises, name, eta, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates"
+    )
     return eta
 
 
@@ -194,9 +198,9 @@ def keys(text: Text) -> dict[str, tuple[int, str]]:
     """Values of lines ``value name …``: lower-case name → (line, value); ``BldFile(1)`` is ``bldfile1``."""
     out: dict[str, tuple[int, str]] = {}
     for k, line in enumerate(text.lines):
-        found = _KEYED.match(line)
-        if found:
-            out.setdefault(found[2].lower() + (found[3] or ""), (k, found[1].strip("\"'")))
+        match = _KEYED.match(line)
+        if match:
+            out.setdefault(match[2].lower() + (match[3] or ""), (k, match[1].strip("\"'")))
     return out
 
 

@@ -89,8 +89,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         notes.append(f"{keys} zero or not given: those strains are rigid")
     axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
     mu = layout.elastic.find("structural_damping", "mu") if layout.elastic.find("structural_damping") else None
-    left = unused("structural_damping.mu", mu.numbers(), "s", path, "modes are undamped") if mu else ()
-    source = Source(f"{NAME} {layout.version}", (path,), axes, tuple(notes), left)
+    unused_values = unused("structural_damping.mu", mu.numbers(), "s", path, "modes are undamped") if mu else ()
+    source = Source(f"{NAME} {layout.version}", (path,), axes, tuple(notes), unused_values)
     return Reading(blade, source, unstated=mounted.unstated)
 
 
@@ -143,13 +143,16 @@ def _axis(layout: Layout) -> Axis:
     return measured(CubicSpline(z, values, bc_type="natural"), z)
 
 
-def _curve(found: Field) -> PchipInterpolator:
-    return PchipInterpolator(_grid(found), _paired(found.get("values").numbers(), found.get("values"), found))
+def _curve(values_on_grid: Field) -> PchipInterpolator:
+    return PchipInterpolator(
+        _grid(values_on_grid),
+        _paired(values_on_grid.get("values").numbers(), values_on_grid.get("values"), values_on_grid),
+    )
 
 
-def _grid(found: Field) -> Array:
+def _grid(values_on_grid: Field) -> Array:
     """The grid of a field: from 0 to 1, strictly increasing."""
-    field = found.get("grid")
+    field = values_on_grid.get("grid")
     grid = field.numbers()
     if len(grid) < 2:
         raise CaseError(f"{field.at}: {len(grid)} points: a blade needs at least a root and a tip")
@@ -164,8 +167,8 @@ def _grid(found: Field) -> Array:
     return grid
 
 
-def _paired(values: Array, field: Field, found: Field) -> Array:
-    count = len(found.get("grid").numbers())
+def _paired(values: Array, field: Field, grid_of: Field) -> Array:
+    count = len(grid_of.get("grid").numbers())
     if len(values) != count:
         raise CaseError(f"{field.at}: {len(values)} values for {count} grid points: give one per point")
     return values
@@ -178,10 +181,10 @@ def _rows(elastic: Field) -> Sections:
     """windIO 1: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
     grids, matrices = [], []
     for key in ("stiff_matrix", "inertia_matrix"):
-        found = elastic.get(key)
-        grids.append(_grid(found))
-        field = found.get("values")
-        matrices.append(_full(_paired(field.rows(21), field, found)))
+        rows = elastic.get(key)
+        grids.append(_grid(rows))
+        field = rows.get("values")
+        matrices.append(_full(_paired(field.rows(21), field, rows)))
     at = elastic.get("stiff_matrix", "values")
     stiffness, loose = _loose(matrices[0], at)
     mass = _checked(matrices[1], mass_fault, elastic.get("inertia_matrix", "values"))
@@ -190,17 +193,17 @@ def _rows(elastic: Field) -> Sections:
 
 def _lists(elastic: Field) -> Sections:
     """windIO 2: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
-    found = elastic.get("stiffness_matrix")
-    grids = [_grid(found)]
+    matrix = elastic.get("stiffness_matrix")
+    grids = [_grid(matrix)]
     entries = np.zeros((len(grids[0]), 21))
     for k, key in enumerate(ENTRIES):
-        field = found.find(key)
+        field = matrix.find(key)
         if field is not None:
-            entries[:, k] = _paired(field.numbers(), field, found)
+            entries[:, k] = _paired(field.numbers(), field, matrix)
         elif key[1] == key[2] and key not in STRAINS:
-            raise CaseError(f"{found.at}: no {key}: a blade must resist bending; add it")
-    stiffness, loose = _loose(_full(entries), found)
-    stiffness = _checked(stiffness, fault, found.get("grid"))
+            raise CaseError(f"{matrix.at}: no {key}: a blade must resist bending; add it")
+    stiffness, loose = _loose(_full(entries), matrix)
+    stiffness = _checked(stiffness, fault, matrix.get("grid"))
     inertia = elastic.get("inertia_matrix")
     grids.append(_grid(inertia))
     mass = _checked(_mass(inertia), mass_fault, inertia.get("mass"))
@@ -268,12 +271,12 @@ def _together(grids: list[Array], matrices: list[Array]) -> tuple[Array, Array, 
 
 def _tip(elastic: Field) -> Array:
     """The point mass at the tip, (6, 6)."""
-    found = elastic.find("point_mass")
+    point_mass = elastic.find("point_mass")
     out = np.zeros((6, 6))
-    if found is None:
+    if point_mass is None:
         return out
-    field = found.get("mass")
-    at, masses = found.get("grid").numbers(), field.numbers()
+    field = point_mass.get("mass")
+    at, masses = point_mass.get("grid").numbers(), field.numbers()
     for k, (where, m) in enumerate(zip(at, masses, strict=True)):
         if m and abs(where - 1) > SAME:
             raise CaseError(

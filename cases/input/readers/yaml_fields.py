@@ -41,10 +41,10 @@ class Field:
         """
         here = self
         for key in path:
-            found = here._keys().get(key)
-            if found is None:
+            node = here._keys().get(key)
+            if node is None:
                 return None
-            here = Field(self.text, f"{here.name}.{key}".lstrip("."), found)
+            here = Field(self.text, f"{here.name}.{key}".lstrip("."), node)
         return here
 
     def get(self, *path: str) -> "Field":
@@ -55,10 +55,10 @@ class Field:
         """
         here = self
         for key in path:
-            found = here.find(key)
-            if found is None:
+            field = here.find(key)
+            if field is None:
                 raise CaseError(f"{here.at}: no key {key}: {nearest(key, here._keys())}; add it")
-            here = found
+            here = field
         return here
 
     def number(self) -> float:
@@ -178,10 +178,10 @@ class _Reusing(yaml.SafeLoader):
 
 def _number(text: Text, node: yaml.Node, name: str) -> float:
     said = node.value if isinstance(node, yaml.ScalarNode) else "a list or keys"
-    found = number(said)
-    if found is None or not believable(found):
+    value = number(said)
+    if value is None or not believable(value):
         raise CaseError(f"{_at(text, node, name)}: {said!r} is not a finite number: a gap in the data? correct it")
-    return found
+    return value
 
 
 def _at(text: Text, node: yaml.Node, name: str) -> str:

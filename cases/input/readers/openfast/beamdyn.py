@@ -69,8 +69,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             "give that file instead, or --length for a straight, untwisted blade"
         )
     axis = _axis(_points(main)) if main is not None else line(mounted.length or 0.0)
-    found, stiffness, mass = _sections(text)
-    eta = fractions(found, "station_eta")
+    sections, stiffness, mass = _sections(text)
+    eta = fractions(sections, "station_eta")
     files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if stated and mount.main else ())
     blade = assemble(path.stem, path, axis, eta, stiffness, mass, mounted)
     if stated and stated.tip_mass:
@@ -84,8 +84,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if stated is None and mounted.unstated:
         notes.append(f"no ElastoDyn main file: {', '.join(mounted.unstated)} taken as 0")
     axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
-    left = (*_damping(text), *(_actuator(main) if main else ()), *(elastodyn_unused.of_main(hub) if hub else ()))
-    return Reading(blade, Source(NAME, files, axes, tuple(notes), left), unstated=mounted.unstated)
+    unused_values = (
+        *_damping(text),
+        *(_actuator(main) if main else ()),
+        *(elastodyn_unused.of_main(hub) if hub else ()),
+    )
+    return Reading(blade, Source(NAME, files, axes, tuple(notes), unused_values), unstated=mounted.unstated)
 
 
 DAMPING = "mu1 … mu6"
@@ -121,8 +125,8 @@ def is_elastodyn(path: Path) -> bool:
 def _main(path: Path, mount: Mount) -> Text | None:
     if mount.main and not is_elastodyn(mount.main):
         return load(mount.main)
-    found = elastodyn.sibling_file(path, is_main, _named)
-    return load(found) if found else None
+    sibling = elastodyn.sibling_file(path, is_main, _named)
+    return load(sibling) if sibling else None
 
 
 def _named(main: Text) -> Path:
@@ -137,27 +141,27 @@ def _points(main: Text) -> Table:
     first = named["kp_total"][0] + 1 + members
     while first < len(main.lines) and not leading(main.lines[first]):
         first += 1
-    found = table(main, first, count, KEY_POINTS)
-    z = found["kp_zr"]
+    points = table(main, first, count, KEY_POINTS)
+    z = points["kp_zr"]
     for name in ("kp_xr", "kp_yr", "kp_zr"):
-        if abs(found[name][0]) <= ROUNDING * np.abs(z).max():
-            found[name][0] = 0.0
-        found.need(
-            np.arange(count) > 0 if found[name][0] else np.ones(count, bool),
+        if abs(points[name][0]) <= ROUNDING * np.abs(z).max():
+            points[name][0] = 0.0
+        points.need(
+            np.arange(count) > 0 if points[name][0] else np.ones(count, bool),
             name,
-            found[name],
+            points[name],
             "the first key point is the root; begin at 0, 0, 0 and put the hub's radius into the main file",
         )
     rises = np.concatenate([[True], np.diff(z) > ROUNDING * np.abs(z).max()])
-    found.need(rises, "kp_zr", z, "not beyond the key point before it: a duplicate or out of order? correct it")
+    points.need(rises, "kp_zr", z, "not beyond the key point before it: a duplicate or out of order? correct it")
     if count < 2:
-        raise CaseError(f"{main.at(found.lines[0])}: 1 key point: a blade needs at least a root and a tip")
-    return found
+        raise CaseError(f"{main.at(points.lines[0])}: 1 key point: a blade needs at least a root and a tip")
+    return points
 
 
-def _axis(found: Table) -> Axis:
-    z = found["kp_zr"]
-    values = np.stack([found["kp_xr"], found["kp_yr"], found["initial_twist"]], axis=1)
+def _axis(points: Table) -> Axis:
+    z = points["kp_zr"]
+    values = np.stack([points["kp_xr"], points["kp_yr"], points["initial_twist"]], axis=1)
     return measured(CubicSpline(z, values, bc_type="natural"), z)
 
 

@@ -81,7 +81,7 @@ def sibling_file(path: Path, kind: Callable[[Text], bool], named: Callable[[Text
     Raises:
         CaseError: if there are several.
     """
-    found = []
+    candidates = []
     for other in sorted(path.parent.glob("*")):
         fits = (
             other.suffix.lower() in {".dat", ".inp", ".txt", ".fst"}
@@ -95,11 +95,11 @@ def sibling_file(path: Path, kind: Callable[[Text], bool], named: Callable[[Text
         except CaseError:  # empty or not text: output of a run, not a main file
             continue
         if kind(text) and named(text).resolve() == path.resolve():
-            found.append(other)
-    if len(found) > 1:
-        names = ", ".join(f.name for f in found)
-        raise CaseError(f"{path}: {len(found)} main files beside it name it ({names}): choose one with --main")
-    return found[0] if found else None
+            candidates.append(other)
+    if len(candidates) > 1:
+        names = ", ".join(f.name for f in candidates)
+        raise CaseError(f"{path}: {len(candidates)} main files beside it name it ({names}): choose one with --main")
+    return candidates[0] if candidates else None
 
 
 def hub(text: Text) -> Hub:
@@ -155,9 +155,9 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
     if missing:
         raise CaseError(f"{text.at(heads[0])}: no column {missing[0]}: the table needs {', '.join(NEEDED)}; add it")
     start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
-    found = table(text, start, count, columns)
-    found.positive(*[name for name in POSITIVE if name in columns])
-    eta = fractions(found, "BlFract")
+    sections = table(text, start, count, columns)
+    sections.positive(*[name for name in POSITIVE if name in columns])
+    eta = fractions(sections, "BlFract")
     mounted = complete(mount, stated.mount if stated else None)
     if mounted.length is None:
         raise CaseError(
@@ -165,22 +165,22 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
             "give --main FILE, or --length and --hub-radius"
         )
     by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())
-    flap_inertia, edge_inertia = (found.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
+    flap_inertia, edge_inertia = (sections.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
     tip = np.diag([stated.tip_mass] * 3 + [0.0] * 3) if stated else np.zeros((6, 6))
-    twist = -np.radians(found["StrcTwst"])
+    twist = -np.radians(sections["StrcTwst"])
     offsets = mount.offsets is not False
-    there = {name: found[name] for name in fast7_offsets.COLUMNS if offsets and name in found.columns}
-    axis = fast7_offsets.line(eta * mounted.length, there, twist)
-    mass = section_mass(by_mass * found["BMassDen"], flap_inertia, edge_inertia)
+    offset_columns = {name: sections[name] for name in fast7_offsets.COLUMNS if offsets and name in sections.columns}
+    axis = fast7_offsets.line(eta * mounted.length, offset_columns, twist)
+    mass = section_mass(by_mass * sections["BMassDen"], flap_inertia, edge_inertia)
     try:
         blade = Blade(
             name=text.path.stem,
             stations=axis.s,
             stiffness=section_stiffness(
-                found.columns.get("EAStff", np.full(count, np.inf)),
-                found.columns.get("GJStff", np.full(count, np.inf)),
-                by_flap * found["FlpStff"],
-                by_edge * found["EdgStff"],
+                sections.columns.get("EAStff", np.full(count, np.inf)),
+                sections.columns.get("GJStff", np.full(count, np.inf)),
+                by_flap * sections["FlpStff"],
+                by_edge * sections["EdgStff"],
             ),
             mass=about(mass, *axis.mass_centre.T) if axis.mass_centre.any() else mass,
             twist=twist,
@@ -192,27 +192,27 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    used = [name for name, values in there.items() if values.any()]
+    used = [name for name, values in offset_columns.items() if values.any()]
     axes = f"{OPENFAST_AXES}; {'the axis is the elastic axis' if used else 'all centres on the pitch axis'}"
-    left = (
-        *elastodyn_unused.of_table(found, USED, offsets),
+    unused_values = (
+        *elastodyn_unused.of_table(sections, USED, offsets),
         *elastodyn_unused.of_blade(text),
         *(elastodyn_unused.of_main(load(main)) if main else ()),
     )
     files = (text.path,) if main is None else (text.path, main)
     notes = _notes(factors, main, mounted, columns)
     if used:
-        largest = ", ".join(f"{name} {max(there[name], key=abs):g} m" for name in used)
+        largest = ", ".join(f"{name} {max(offset_columns[name], key=abs):g} m" for name in used)
         notes += (
             f"offsets used (largest): {largest}; rotated by the structural twist; `offsets = false` or --no-offsets leaves "
             "them out, as FAST itself does",
         )
-    return Reading(blade, Source(NAME, files, axes, notes, left), unstated=mounted.unstated)
+    return Reading(blade, Source(NAME, files, axes, notes, unused_values), unstated=mounted.unstated)
 
 
 def _columns(names: list[str]) -> tuple[str, ...]:
-    known = {n.lower(): n for n in (*COLUMNS, *USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS)}
-    return tuple(known.get(name.lower(), name) for name in names)
+    by_lower_case = {n.lower(): n for n in (*COLUMNS, *USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS)}
+    return tuple(by_lower_case.get(name.lower(), name) for name in names)
 
 
 def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns: tuple[str, ...]) -> tuple[str, ...]:

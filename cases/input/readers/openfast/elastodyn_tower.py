@@ -96,18 +96,20 @@ def beam(text: Text, height: float) -> tuple[Blade, tuple[str, ...]]:
     first = heads[0] + 1 if heads else max(named[name.lower()][0] for name in MULTIPLIERS) + 1
     start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
     names = tokens(text.lines[heads[0]]) if heads else list(COLUMNS)
-    known = {name.lower(): name for name in (*COLUMNS, *OFFSETS)}
-    found = table(text, start, count, tuple(known.get(name.lower(), name) for name in names))
-    missing = [name for name in COLUMNS if name not in found.columns]
+    by_lower_case = {name.lower(): name for name in (*COLUMNS, *OFFSETS)}
+    sections = table(text, start, count, tuple(by_lower_case.get(name.lower(), name) for name in names))
+    missing = [name for name in COLUMNS if name not in sections.columns]
     if missing:
         raise CaseError(f"{text.at(heads[0])}: no column {missing[0]}: the table needs {', '.join(COLUMNS)}; add it")
-    found.positive(*COLUMNS[1:])
+    sections.positive(*COLUMNS[1:])
     try:
         tower = Blade(
             name=text.path.stem,
-            stations=fractions(found, "HtFract") * height,
-            stiffness=section_stiffness(np.inf, np.inf, factors[1] * found["TwFAStif"], factors[2] * found["TwSSStif"]),
-            mass=section_mass(factors[0] * found["TMassDen"]),
+            stations=fractions(sections, "HtFract") * height,
+            stiffness=section_stiffness(
+                np.inf, np.inf, factors[1] * sections["TwFAStif"], factors[2] * sections["TwSSStif"]
+            ),
+            mass=section_mass(factors[0] * sections["TMassDen"]),
             twist=np.zeros(count),
         )
     except BladeError as error:

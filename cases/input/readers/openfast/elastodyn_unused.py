@@ -33,16 +33,16 @@ TEETER = {
 CLAMPED = "the teeter hinge is treated as clamped: modes in which the rotor teeters are not those of this blade"
 
 
-def of_table(found: Table, used: tuple[str, ...], offsets: bool) -> tuple[Unused, ...]:
+def of_table(sections: Table, used: tuple[str, ...], offsets: bool) -> tuple[Unused, ...]:
     """Non-zero columns of a blade table not among ``used``; ``offsets``: whether the offset columns are used."""
     out: list[Unused] = []
-    for name, values in found.columns.items():
+    for name, values in sections.columns.items():
         if name in used or (name in OFFSETS and offsets):
             continue
         unit, why = COLUMNS.get(name, ("", "not a column that is known here"))
         if name in OFFSETS:
             unit, why = "m", "switched off by `offsets`"
-        out += unused(name, values, unit, found.text.path, why)
+        out += unused(name, values, unit, sections.text.path, why)
     return tuple(out)
 
 
@@ -92,10 +92,10 @@ def _each(text: Text, name: str) -> tuple[float, ...]:
 def _values(text: Text, names: tuple[str, ...]) -> tuple[float, ...]:
     """The finite numbers of the names that are present."""
     named = keys(text)
-    found = (number(named[name.lower()][1]) for name in names if name.lower() in named)
-    return tuple(value for value in found if value is not None and math.isfinite(value))
+    numbers = (number(named[name.lower()][1]) for name in names if name.lower() in named)
+    return tuple(value for value in numbers if value is not None and math.isfinite(value))
 
 
 def _flag(text: Text, name: str) -> bool:
-    found = keys(text).get(name.lower())
-    return found is not None and found[1].lower().strip(".") in ("true", "t")
+    line = keys(text).get(name.lower())
+    return line is not None and line[1].lower().strip(".") in ("true", "t")

@@ -41,12 +41,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             f"{text.at(named['compelast'][0])}: CompElast: {kind}: only blades of ElastoDyn (1) and BeamDyn (2) are read"
         )
     hub = file_named(text, "EDFile")
-    found = (
+    stated = (
         elastodyn.read(hub, mount)
         if kind == 1
         else beamdyn.read(file_named(text, "BDBldFile1"), replace(mount, main=hub))
     )
-    return replace(found, source=replace(found.source, files=(path, *found.source.files)))
+    return replace(stated, source=replace(stated.source, files=(path, *stated.source.files)))
 
 
 def file_named(text: Text, name: str) -> Path:

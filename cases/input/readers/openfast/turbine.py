@@ -100,10 +100,10 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
         *tower_notes,
         *(note for note in blade.source.notes if "are not part of the blade" not in note),
     )
-    left = (*_unused(main, named), *tower_reader.of_tower(tower_text), *blade.source.unused)
+    unused_values = (*_unused(main, named), *tower_reader.of_tower(tower_text), *blade.source.unused)
     files = (*blade.source.files, tower_text.path, *servo)
     speed = _number(main, "RotSpeed", 0.0) * np.pi / 30.0
-    return TurbineReading(turbine, Source(NAME, files, AXES, notes, left), float(speed))
+    return TurbineReading(turbine, Source(NAME, files, AXES, notes, unused_values), float(speed))
 
 
 def _nacelle(main: Text, named: Named) -> np.ndarray:
@@ -167,11 +167,11 @@ def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
 
 def _number(text: Text, name: str, otherwise: float) -> float:
     """The finite number under a name, or another one."""
-    found = keys(text).get(name.lower())
-    out = number(found[1]) if found else None
+    line = keys(text).get(name.lower())
+    out = number(line[1]) if line else None
     return out if out is not None and np.isfinite(out) else otherwise
 
 
 def _flag(text: Text, named: Named, name: str) -> bool:
-    found = named.get(name.lower())
-    return found is not None and found[1].lower().strip(".") in ("true", "t")
+    line = named.get(name.lower())
+    return line is not None and line[1].lower().strip(".") in ("true", "t")
