@@ -8,6 +8,7 @@ from ...references.protocol.description import describe
 from ...references.protocol.registry import ADVICE, UnknownCodeError
 from ..shared.console import output
 from ..shared.table_columns import tables
+from .errors import UsageError
 
 MARKS = {"pass": "✔", "fail": "✘", "not applicable": "–", "not run": "○"}
 
@@ -27,6 +28,9 @@ def command(code: str, /) -> int:
     if known.failure and known.failure.reason.startswith("import: "):
         why = known.failure.reason.removeprefix("import: ")
         raise UnknownCodeError(f"code: {code!r} cannot be loaded: {why}: {ADVICE}")
+    if known.turbines and not (known.blades or known.mechanisms):
+        why = "the checks are for codes that solve blades or mechanisms"
+        raise UsageError(f"conform {code}: {why}: run southwell verify nrel-5mw-turbine --codes {code}")
     checks = (*(CHECKS if known.blades else ()), *(FOR_MECHANISMS if known.mechanisms else ()))
     found = outcomes(code, checks if not known.failure else CHECKS)
     rows = [(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law) for outcome in found]

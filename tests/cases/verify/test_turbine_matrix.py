@@ -92,3 +92,10 @@ def test_a_deck_is_verified_with_an_independent_code(tmp_path: Path, capsys: pyt
     shown = " ".join(capsys.readouterr().out.split())
     assert (exit_.value.code or 0) == 0, shown
     assert "8 cells: 8 ✔ pass" in shown
+
+
+def test_conform_points_a_code_for_turbines_to_its_case(capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as exit_:
+        app.main(["conform", "exudyn-turbine"])
+    assert exit_.value.code == 2
+    assert "run southwell verify nrel-5mw-turbine --codes exudyn-turbine" in capsys.readouterr().err
