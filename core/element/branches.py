@@ -97,7 +97,8 @@ def springs(stiffness: Array) -> tuple[Array, Array]:
     root = np.linalg.cholesky(np.linalg.inv(stiffness[np.ix_(finite, finite)]))
     screws = np.zeros((len(finite), 6))
     screws[:, finite] = (root / np.diagonal(root)).T
-    return screws, np.diagonal(root) ** -2
+    constants: Array = 1.0 / np.diagonal(root) ** 2
+    return screws, constants
 
 
 def around_hub(blade: Mesh, count: int) -> Mesh:

@@ -182,8 +182,9 @@ def held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady:
         link = int(np.abs(ends - height).argmin()) + offset - 1
         if link < 0:
             continue  # at a clamped base
-        axes = np.kron(np.eye(2), state.shape.nodes[link + 1, :3, :3])
-        J = _of_link(p, link, np.concatenate([np.zeros((6, 6)), axes], axis=1))
+        moved = np.zeros((6, 12))
+        moved[:3, 6:9] = moved[3:, 9:] = state.shape.nodes[link + 1, :3, :3]
+        J = _of_link(p, link, moved)
         K[link] += J.T @ checked("spring", stiffness, False) @ J
     return replace(state, pencil=TreePencil(p.residual, p.M, p.C, K, p.links))
 

@@ -174,7 +174,7 @@ def write(diagram: MachineDiagram, folder: Path, units: Units) -> Path:
     options = {"responsive": True, "displaylogo": False}
     figure = lines(diagram, units).to_html(full_html=False, include_plotlyjs=True, div_id="diagram", config=options)
     data = json.dumps(moving(diagram, units), separators=(",", ":")).replace("</", "<\\/")
-    script = files(__package__).joinpath("machine.js").read_text(encoding="utf-8")
+    script = files(__package__ or "").joinpath("machine.js").read_text(encoding="utf-8")
     path = folder / PAGE
     atomic.write(
         path,

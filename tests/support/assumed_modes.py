@@ -114,7 +114,8 @@ def _blades(turbine: Turbine, path: Path, hub: Array, M: Array, K: Array) -> tup
 
 def _derivatives(shapes: Sequence[Array], h: Array, length: float, order: int) -> Array:
     """(shapes, points) derivatives along the beam."""
-    return np.array([polynomial.polyval(h, polynomial.polyder(c, order)) for c in shapes]) / length**order
+    out: Array = np.array([polynomial.polyval(h, polynomial.polyder(c, order)) for c in shapes]) / length**order
+    return out
 
 
 def _twice(curvature: Array, length: float, h: Array) -> Array:
