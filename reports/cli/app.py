@@ -45,7 +45,12 @@ COMMANDS = (
         "Show the mass, sections and axes of a blade, and how its file was read.",
     ),
     (ONE_BLADE, "convert", "cli.blade.convert:command", "Write a blade in another format."),
-    (VERIFY, "verify", "cli.verify:command", "Solve blades and turbines with every code, compare the results and write a report."),
+    (
+        VERIFY,
+        "verify",
+        "cli.verify:command",
+        "Solve blades and turbines with every code, compare the results and write a report.",
+    ),
     (VERIFY, "report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
     (VERIFY, "pages", "cli.pages:command", "Write a run as HTML, dashboard, and a summary on two pages."),
     (VERIFY, "cases", "cli.listings:cases", "List the cases that come with the package."),
