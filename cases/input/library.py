@@ -8,6 +8,7 @@ from pathlib import Path
 from .. import data
 from . import turbine_cases
 from .errors import CaseError, FilesMissingError, nearest
+from .machines.turbines import is_turbine
 from .mechanisms import Described, matches_format
 from .mechanisms import read as describe
 from .readers import southwell_toml
@@ -107,7 +108,7 @@ def select(name: str) -> Case:
 
 
 def is_blade_file(name: str) -> bool:
-    """Whether a name is that of a blade file, not of a case."""
+    """Whether a name is that of a file of a blade or of a turbine, not of a case."""
     path = Path(name)
     if (
         name in (*names(), *turbines())
@@ -115,4 +116,6 @@ def is_blade_file(name: str) -> bool:
         or not (path.suffix or os.path.isfile(path))
     ):
         return False
-    return path.suffix.lower() != ".toml" or (os.path.isfile(path) and southwell_toml.matches_format(path))
+    if path.suffix.lower() != ".toml":
+        return True
+    return os.path.isfile(path) and (southwell_toml.matches_format(path) or is_turbine(path))

@@ -5,6 +5,8 @@ from collections import Counter
 from collections.abc import Sequence
 from functools import partial
 
+import numpy as np
+
 from ...core.effects import ALL_EFFECTS
 from ...core.rotor.periodic import PeriodicError
 from ...core.rotor.stations import COLUMNS, weights
@@ -62,7 +64,8 @@ def _reference(coarse: Machine, fine: Machine, omega: float, count: int) -> Refe
 
 def spectrum(turbine: Turbine, modes: TurbineModes) -> Spectrum:
     """Core's modes in the form in which they are compared; they are undamped."""
-    return Spectrum(1j * modes.frequencies, modes.motions, COLUMNS, weights(turbine), labels(modes.names))
+    values = np.asarray(1j * modes.frequencies, np.complex128)
+    return Spectrum(values, modes.motions, COLUMNS, weights(turbine), labels(modes.names))
 
 
 def labels(names: Sequence[str]) -> tuple[str, ...]:

@@ -64,7 +64,7 @@ class ExudynTurbine(TurbineAdapter):
         segments = hinge_segments(turbine.blade, elements, omega, equal=True)
         tower = hinge_segments(turbine.tower, elements, equal=True)
         tree = turbine_tree.build(turbine, chain(turbine.tower, tower), chain(turbine.blade, segments))
-        *blade, at_blade = linearize(segments, omega)
+        M, C, K, at_blade = linearize(segments, omega)
         q = np.zeros(len(tree.strain))
         q[tree.tower], weight = turbine_tree.standing(tree)
         q[tree.blades] = at_blade
@@ -75,7 +75,7 @@ class ExudynTurbine(TurbineAdapter):
             return turbine_tree.with_generator(tree, q, M, C, K)
 
         groups = [[int(k) - 1 for k in joint] for joint in tree.blades.T]  # without the azimuth
-        lowest = float(gyroscopic_modes(*blade, 1)[0][0])
+        lowest = float(gyroscopic_modes(M, C, K, 1)[0][0])
         values, x = rotating.lowest(at, omega, groups, count, lowest, turbine.drivetrain.free)
         full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
         return TurbineModes(values, turbine_tree.shapes(tree, q, full), elements)
@@ -84,15 +84,18 @@ class ExudynTurbine(TurbineAdapter):
 def chain(blade: Blade, segments: HingedSegments) -> Chain:
     """Hinged segments as a chain of joints."""
     bodies = [NOTHING] * len(segments.strain)
-    for link, *body in zip(segments.segment, segments.mass, segments.centre, segments.inertia, strict=True):
-        bodies[link] = Body(*body)
+    for link, mass, centre, moments in zip(
+        segments.segment, segments.mass, segments.centre, segments.inertia, strict=True
+    ):
+        bodies[link] = Body(float(mass), centre, moments)
+    mass, centre, moments = root_segment(blade, segments.start)
     return Chain(
         strain=segments.strain,
         stiffness=np.diag(segments.stiffness) + segments.coupling.toarray(),
         offset=segments.offset,
         axes=segments.rotation,
         bodies=tuple(bodies),
-        root=Body(*root_segment(blade, segments.start)),
+        root=Body(float(mass), centre, moments),
         base=line(blade, np.zeros((1, 1))).position[0, 0],
         nodes=segments.segment,
         reach=segments.reach,

@@ -157,13 +157,17 @@ def _compliance(blade: Blade, arc: Array, position: Array, axes: Array) -> Array
     return out
 
 
+def _pinocchio() -> Any:
+    import pinocchio
+
+    return pinocchio
+
+
 class _Plant:
     """Some links of a tree in Pinocchio, in ascending order, each after its parent."""
 
     def __init__(self, tree: TurbineTree, links: Index, bodies: tuple[Body, ...]) -> None:
-        import pinocchio
-
-        self.pin: Any = pinocchio
+        pinocchio = self.pin = _pinocchio()
         self.spin = tree.spin
         kinds = (
             pinocchio.JointModelPX,

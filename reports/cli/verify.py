@@ -42,7 +42,7 @@ def command(
     Parameters
     ----------
     case
-        A turbine's primary file (.fst), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name
+        A turbine's file (.fst, TOML), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name
         (`southwell cases`), one blade of a case as `case/blade`, or case files (TOML). Default: all cases. Of a turbine, the
         lowest eight modes are compared, of a blade the lowest six.
     codes

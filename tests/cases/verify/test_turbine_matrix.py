@@ -1,11 +1,13 @@
 """A turbine in the matrix: its subject, the verdicts of codes on it, and the command."""
 
 from collections.abc import Callable, Sequence
+from importlib.resources import files
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from southwell.cases import data
 from southwell.cases.input.readers.openfast import turbine as reader
 from southwell.cases.judge.results import Cell
 from southwell.cases.plan import turbine as plan
@@ -99,3 +101,11 @@ def test_conform_points_a_code_for_turbines_to_its_case(capsys: pytest.CaptureFi
         app.main(["conform", "exudyn-turbine"])
     assert exit_.value.code == 2
     assert "run southwell verify nrel-5mw-turbine --codes exudyn-turbine" in capsys.readouterr().err
+
+
+def test_a_turbine_in_toml_is_a_subject_at_the_given_speeds() -> None:
+    path = Path(str(files(data) / "turbines" / "nrel-5mw-machine.toml"))
+    (whole,) = subjects(Request((str(path),), rpm="6,12"), print)
+    assert isinstance(whole, TurbineSubject)
+    assert whole.rpm
+    np.testing.assert_allclose(whole.points, np.array([6.0, 12.0]) * np.pi / 30.0)
