@@ -83,6 +83,9 @@ def test_certification(tmp_path: Path, factor: float, more: str, printed: tuple[
     np.testing.assert_allclose(found.frequencies / (2 * np.pi), printed, rtol=5e-3)
     assert found.names[:2] == ("1st side-side", "1st fore-aft")
     assert "without weight, as in BModes" in source.notes
+    exact = [(0.40 * HEIGHT, 1.5 * 9.0e9 * 0.5), (0.72 * HEIGHT, 1.5 * 1.6e9 * 0.75)] if "wire_stfness" in more else []
+    wires = [(height, float(S[2, 2])) for height, S in tower.support.springs]
+    np.testing.assert_allclose(wires, exact, rtol=1e-12)
 
 
 def test_moments_are_about_the_mass_centre_from_bmodes_3_on(tmp_path: Path) -> None:
