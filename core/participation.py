@@ -148,8 +148,8 @@ def _smooth_motion(
     along = frames(blade, s)[:, :3, 0]
     bending = np.cross(along, line(s, 1))
     turning = bending + CubicSpline(at, torsion, axis=1)(s)[:, :, None] * along
-    beyond = centre - CubicSpline(at, offset)(s)
-    return line(s) + np.cross(bending, centre - beyond) + np.cross(turning, beyond), turning
+    from_line = centre - CubicSpline(at, offset)(s)
+    return line(s) + np.cross(bending, centre - from_line) + np.cross(turning, from_line), turning
 
 
 def _about_centre(mass: Array, section: Array) -> tuple[Array, Array]:

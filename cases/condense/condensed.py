@@ -86,7 +86,7 @@ class _Piece(msgspec.Struct, forbid_unknown_fields=True):
     undeformed: list[list[float]]
     stiffness: list[list[float]]
     inertia: list[list[float]]
-    ride: list[list[float]]
+    body_twist: list[list[float]]
 
 
 class _Kept(msgspec.Struct, forbid_unknown_fields=True):
@@ -109,7 +109,7 @@ def read(path: Path) -> Condensed:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: {error}: not written by `southwell condense`; condense again") from error
-    sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "ride": 6}
+    sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "body_twist": 6}
     pieces = []
     for k, piece in enumerate(kept.segments):
         matrices = {

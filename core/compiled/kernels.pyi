@@ -107,7 +107,7 @@ def twists(links: Links, x: Array) -> None:
 def factor(K: Array, links: Links) -> tuple[int, Array, Array, Array]:
     """The parts of ``elimination.Factor``; before them 2 if all pivots are positive, 1 if not, 0 if K is singular."""
 
-def solve(flexibility: Array, ride: Array, reaction: Array, links: Links, x: Array) -> None:
+def solve(flexibility: Array, transfer: Array, reaction: Array, links: Links, x: Array) -> None:
     """``elimination.solve``."""
 
 def negative_pivots(K: Array, C: Array, M: Array, links: Links, omega: float) -> int:
@@ -127,7 +127,7 @@ class Operator:
         K: Array,
         links: Links,
         flexibility: Array,
-        ride: Array,
+        transfer: Array,
         reaction: Array,
         massive: Array,
         lever: Array,
@@ -139,19 +139,19 @@ class Operator:
         """A⁻¹S v for the rows of v (k, 2n)."""
 
     def extend(
-        self, w: Array, basis: Array, projected: Array, size: int, before: int, look: int
+        self, w: Array, basis: Array, projected: Array, size: int, last_step: int, look: int
     ) -> tuple[Array, int, int, bool]:
         """Take block Lanczos steps until the basis has ``look`` vectors or cannot grow.
 
         Args:
             w: (k, 2n) result of the last step, k at most 8; at the end its first rows are that of the new last step,
                 orthogonal to the basis.
-            basis: (limit, 2n), with ``size`` rows filled, those of the last step from ``before`` on; extended in place.
+            basis: (limit, 2n), with ``size`` rows filled, those of the last step from ``last_step`` on; extended in place.
             projected: (m, m) the operator on the basis, m at least ``look`` + k or ``limit``, zero beyond the filled part;
                 extended in place.
-            size, before: see ``basis``; both 0 at the start.
+            size, last_step: see ``basis``; both 0 at the start.
             look: requested number of vectors.
 
         Returns:
-            The Gram matrix of w, the new size and before, and whether the basis is exhausted.
+            The Gram matrix of w, the new size and last_step, and whether the basis is exhausted.
         """

@@ -10,16 +10,16 @@ namespace southwell {
 struct LanczosOperator {
     Doubles M, C, K;
     LinkArrays links;
-    Doubles flexibility, ride, reaction, massive, lever;
+    Doubles flexibility, transfer, reaction, massive, lever;
 
-    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, const LinkArrays& links_, Doubles flexibility_, Doubles ride_,
+    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, const LinkArrays& links_, Doubles flexibility_, Doubles transfer_,
                     Doubles reaction_, Doubles massive_, Doubles lever_)
         : M(M_),
           C(C_),
           K(K_),
           links(links_),
           flexibility(flexibility_),
-          ride(ride_),
+          transfer(transfer_),
           reaction(reaction_),
           massive(massive_),
           lever(lever_) {}
@@ -31,7 +31,7 @@ struct LanczosOperator {
                 elements_of<D>(C, m.n),
                 m,
                 links_of(links, m.n),
-                factors_of<D>(flexibility, ride, reaction, m.n),
+                factors_of<D>(flexibility, transfer, reaction, m.n),
                 massive.size() ? items<Matrix6>(massive, m.n) : nullptr,
                 massive.size() ? items<Matrix6>(lever, m.n) : nullptr};
     }
@@ -58,13 +58,13 @@ struct LanczosOperator {
         });
     }
 
-    // See krylov.extend: w, basis and projected are changed; the Gram matrix, the new size and before, and exhausted.
-    py::tuple extend(py::array& w, py::array& basis, py::array& projected, int size, int before, int look) const {
+    // See krylov.extend: w, basis and projected are changed; the Gram matrix, the new size and last_step, and exhausted.
+    py::tuple extend(py::array& w, py::array& basis, py::array& projected, int size, int last_step, int look) const {
         return sized(K, [&](auto D) {
             const auto a = sized_as<D>();
             Rows rows = writable_rows(w, 2 * a.size());
-            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size, before};
-            if (rows.count < 1 || rows.count > WIDTH || before < 0 || size < before || size > grown.vectors.count ||
+            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size, last_step};
+            if (rows.count < 1 || rows.count > WIDTH || last_step < 0 || size < last_step || size > grown.vectors.count ||
                 grown.projected.count < std::min(look + rows.count, grown.vectors.count))
                 throw std::invalid_argument("a block has at most eight vectors, and the basis and its projection room");
             bool exhausted = false;
@@ -72,7 +72,7 @@ struct LanczosOperator {
             Doubles out({gram.count, gram.count});
             for (int i = 0; i < gram.count; ++i)
                 for (int j = 0; j < gram.count; ++j) out.mutable_at(i, j) = gram.item[i][j];
-            return py::make_tuple(out, grown.size, grown.before, exhausted);
+            return py::make_tuple(out, grown.size, grown.last_step, exhausted);
         });
     }
 };

@@ -162,37 +162,37 @@ inline void twists(const LinkArrays& links, py::array& x) {
     to_twists(links_of(links, n), static_cast<int>(d), {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
 }
 
-// Factors of K: the worst pivot (see ``invert``), flexibility, ride, reaction.
+// Factors of K: the worst pivot (see ``invert``), flexibility, transfer, reaction.
 inline py::tuple factor(const py::array& K, const LinkArrays& links) {
     return sized(K, [&](auto D) {
         constexpr int d = D - 6;
         const auto m = elements_of<D>(K, K.shape(0));
-        Doubles flexibility({m.n, d, d}), ride({m.n, 6, d}), reaction({m.n, d, 6});
-        const Factors<D> out{fill<Matrix<d, d>>(flexibility), fill<Matrix<6, d>>(ride), fill<Matrix<d, 6>>(reaction)};
+        Doubles flexibility({m.n, d, d}), transfer({m.n, 6, d}), reaction({m.n, d, 6});
+        const Factors<D> out{fill<Matrix<d, d>>(flexibility), fill<Matrix<6, d>>(transfer), fill<Matrix<d, 6>>(reaction)};
         const int kind = eliminate(m, links_of(links, m.n), out);
-        return py::make_tuple(kind, flexibility, ride, reaction);
+        return py::make_tuple(kind, flexibility, transfer, reaction);
     });
 }
 
 // Factors that lie in NumPy's arrays; they are only read.
 template <int D>
-Factors<D> factors_of(const py::array& flexibility, const py::array& ride, const py::array& reaction, int n) {
+Factors<D> factors_of(const py::array& flexibility, const py::array& transfer, const py::array& reaction, int n) {
     constexpr int d = D - 6;
     return {const_cast<Matrix<d, d>*>(items<Matrix<d, d>>(flexibility, n)),
-            const_cast<Matrix<6, d>*>(items<Matrix<6, d>>(ride, n)),
+            const_cast<Matrix<6, d>*>(items<Matrix<6, d>>(transfer, n)),
             const_cast<Matrix<d, 6>*>(items<Matrix<d, 6>>(reaction, n))};
 }
 
 // Replace the loads x (k, dn) by the displacements.
-inline void solve_in_place(const py::array& flexibility, const py::array& ride, const py::array& reaction,
+inline void solve_in_place(const py::array& flexibility, const py::array& transfer, const py::array& reaction,
                            const LinkArrays& of, py::array& x) {
     const Links& links = links_of(of, flexibility.shape(0));
     const int n = links.n, d = static_cast<int>(flexibility.shape(1));
     const Rows rows = writable_rows(x, n * d);
     if (d == 12)
-        solve(factors_of<18>(flexibility, ride, reaction, n), links, rows);
+        solve(factors_of<18>(flexibility, transfer, reaction, n), links, rows);
     else
-        solve(factors_of<12>(flexibility, ride, reaction, n), links, rows);
+        solve(factors_of<12>(flexibility, transfer, reaction, n), links, rows);
 }
 
 inline int negative(const py::array& K, const py::array& C, const py::array& M, const LinkArrays& links, double omega) {

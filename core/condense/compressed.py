@@ -57,7 +57,7 @@ def mesh_from_segments(segments: Sequence[Segment], root: Array) -> Mesh:
             law=constant_strain("corotational", undeformed),
             stiffness=bm.end_stiffness("corotational", undeformed, np.array([s.stiffness for s in segments])),
             points=bm.carried_points(
-                undeformed, np.arange(n), centres, np.array([s.ride for s in segments]), none, bodies
+                undeformed, np.arange(n), centres, np.array([s.body_twist for s in segments]), none, bodies
             ),
             preload=np.zeros((n, 6)),
             inner_preload=np.zeros((n, 6)),

@@ -159,8 +159,8 @@ def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Arr
             )
         J, mean = _body(fe_model, masses[k], a.frame, displacements)
         stiffness: Array = np.linalg.inv(0.5 * (flexibility + flexibility.T))
-        ride: Array = (mean - twists[k]) @ np.linalg.inv(rho)
-        out.append(Segment(undeformed, stiffness, J, ride))
+        body_twist: Array = (mean - twists[k]) @ np.linalg.inv(rho)
+        out.append(Segment(undeformed, stiffness, J, body_twist))
     return out
 
 

@@ -26,7 +26,7 @@ def _pair(a: Segment, b: Segment) -> Segment:
     second = out @ np.linalg.inv(b.stiffness) @ out.T
     second_inertia = to_first_frame.T @ b.inertia @ to_first_frame
     inertia = a.inertia + second_inertia
-    twist_b = first + out @ b.ride @ to_first_frame @ second  # of b's body
-    mean = np.linalg.solve(inertia, a.inertia @ a.ride @ first + second_inertia @ twist_b)
+    twist_b = first + out @ b.body_twist @ to_first_frame @ second  # of b's body
+    mean = np.linalg.solve(inertia, a.inertia @ a.body_twist @ first + second_inertia @ twist_b)
     stiffness = np.linalg.inv(first + second)
     return Segment(a.undeformed @ b.undeformed, 0.5 * (stiffness + stiffness.T), inertia, mean @ stiffness)

@@ -33,13 +33,13 @@ class Segment:
         undeformed: (4, 4) pose of b in a's frame.
         stiffness: (6, 6) wrench on b from the twist of b relative to a, both about a's origin.
         inertia: (6, 6) of the body, about a's origin.
-        ride: (6, 6) the body's twist relative to a, from that of b.
+        body_twist: (6, 6) the body's twist relative to a, from that of b.
     """
 
     undeformed: Array
     stiffness: Array
     inertia: Array
-    ride: Array
+    body_twist: Array
 
 
 def between(stiffness: Array, undeformed: Array, name: str) -> Array:

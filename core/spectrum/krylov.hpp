@@ -175,7 +175,7 @@ inline void eigh(Gram& gram, double (&value)[WIDTH], double (&vectors)[WIDTH][WI
 struct Basis {
     Rows vectors;      // ``limit`` rows
     Rows projected;    // (m, m), with room for the vectors to come
-    int size, before;  // rows that are filled, and where those of the last step begin
+    int size, last_step;  // rows that are filled, and where those of the last step begin
 };
 
 // Orthogonalise w, with M y = ``My``, against the basis in the A product; the overlaps are added to ``projected``.
@@ -183,7 +183,7 @@ struct Basis {
 // ``dual`` is overwritten. Returns the Gram matrix of w and, in ``largest``, the largest overlap of the last pass.
 template <int D>
 Gram orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, Rows dual, double& largest) {
-    const int n = a.size(), latest = basis.size - basis.before;
+    const int n = a.size(), step = basis.size - basis.last_step;
     const Rows filled{basis.vectors.data, basis.vectors.stride, basis.size};
     std::vector<double> memory(WIDTH * static_cast<size_t>(basis.size));
     auto* overlap = reinterpret_cast<Row*>(memory.data());
@@ -198,8 +198,8 @@ Gram orthogonalise(const Operator<D>& a, Rows w, Rows My, const Basis& basis, Ro
         project_out(w, overlap, filled, 2 * n);
         largest = 0.0;
         for (int i = 0; i < basis.size; ++i) {
-            for (int j = 0; j < latest; ++j) {
-                basis.projected[i][basis.before + j] += overlap[i][j];
+            for (int j = 0; j < step; ++j) {
+                basis.projected[i][basis.last_step + j] += overlap[i][j];
                 largest = std::max(largest, std::abs(overlap[i][j]));
             }
         }
@@ -221,9 +221,9 @@ Gram extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhaust
     Block force(most, 2 * n), of_w(most, n), of_last(most, n), of_these(most, n);
     std::vector<double> memory(2 * WIDTH * static_cast<size_t>(most));
     auto* overlap = reinterpret_cast<Row*>(memory.data());
-    of_last.count = basis.size - basis.before;
+    of_last.count = basis.size - basis.last_step;
     times(a.M, 1.0, a.links, Rows{w.data + n, w.stride, w.count}, of_w);
-    times(a.M, 1.0, a.links, Rows{basis.vectors[basis.before] + n, basis.vectors.stride, of_last.count}, of_last);
+    times(a.M, 1.0, a.links, Rows{basis.vectors[basis.last_step] + n, basis.vectors.stride, of_last.count}, of_last);
     while (true) {
         double largest, value[WIDTH], vectors[WIDTH][WIDTH];
         const Gram gram = orthogonalise(a, w, of_w, basis, force, largest);
@@ -246,18 +246,18 @@ Gram extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhaust
         }
         w.count = force.count = of_w.count = of_these.count = kept;
         const Rows these{basis.vectors[basis.size], basis.vectors.stride, kept};
-        const Rows both{basis.vectors[basis.before], basis.vectors.stride, basis.size - basis.before + kept};
+        const Rows both{basis.vectors[basis.last_step], basis.vectors.stride, basis.size - basis.last_step + kept};
         forward(a, these, w, force, of_these);
         products(both, force, 2 * n, overlap);
         for (int i = 0; i < both.count; ++i)
-            for (int j = 0; j < kept; ++j) basis.projected[basis.before + i][basis.size + j] = overlap[i][j];
+            for (int j = 0; j < kept; ++j) basis.projected[basis.last_step + i][basis.size + j] = overlap[i][j];
         project_out(w, overlap, both, 2 * n);
         for (int m = 0; m < kept; ++m)
             for (int i = 0; i < n; ++i) of_w[m][i] = force[m][n + i];  // M y = −M x is known
         project_out(of_w, overlap, of_last, n);
         project_out(of_w, overlap + of_last.count, of_these, n);
         std::swap(of_last, of_these);
-        basis.before = basis.size;
+        basis.last_step = basis.size;
         basis.size += kept;
     }
 }

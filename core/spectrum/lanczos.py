@@ -107,7 +107,7 @@ def _operator(p: TreePencil) -> kernels.Operator:
     except np.linalg.LinAlgError:
         raise eigen.unstable() from None
     return kernels.Operator(
-        p.M, p.C, p.K, p.links.arrays, factor.flexibility, factor.ride, factor.reaction, *_massive(p)
+        p.M, p.C, p.K, p.links.arrays, factor.flexibility, factor.transfer, factor.reaction, *_massive(p)
     )
 
 
@@ -162,16 +162,16 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
     limit, width = min(w.shape[1], max(200, 8 * count)), len(w)
     look, every = (first_look, _LOOK_EVERY_NEAR) if first_look else (3 * count + _FIRST_LOOK * width, _LOOK_EVERY)
     basis, projected = np.empty((limit + width, w.shape[1])), np.zeros((look + width, look + width))
-    size, before = 0, 0
+    size, last_step = 0, 0
     while True:
-        gram, size, before, exhausted = a.extend(w, basis, projected, size, before, look)
+        gram, size, last_step, exhausted = a.extend(w, basis, projected, size, last_step, look)
         w = w[: len(gram)]
         if not size:
             raise EigensolverError("implausible stiffness-to-mass ratio: check the units of both")
         requested, available = min(count, size // 2), min(count + _EXTRA_MODES, size // 2)
         mu, z = eigh(1j * projected[:size, :size], "U")  # of i times the skew matrix with this upper triangle
         mu, next_values, z = mu[size - requested :], mu[size - available : size - requested], z[:, size - requested :]
-        last = z[before:]
+        last = z[last_step:]
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
             break

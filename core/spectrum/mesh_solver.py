@@ -13,7 +13,7 @@ from ..element.mesh import Mesh
 from ..modes import Modes
 from ..steady import blade_state as steady
 from ..steady.blade_state import Steady, SteadyStateError
-from ..steady.continuation import LATEST
+from ..steady.continuation import MAX_PREVIOUS
 from ..tree import pencil
 from ..tree.mode_shapes import mode_shapes
 from ..tree.pencil import Shape, TreePencil
@@ -107,7 +107,7 @@ def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None
             ) from error
         raise type(error)(f"omega: {omega:.6g} rad/s: {mesh.elements} elements: {error}") from error
     others = [(square, q) for square, q in start.coordinates.items() if square != omega**2]
-    latest = dict([*others, (omega**2, steady.coordinates(mesh, state.shape))][-LATEST:])
+    previous = dict([*others, (omega**2, steady.coordinates(mesh, state.shape))][-MAX_PREVIOUS:])
     shapes = mode_shapes(mesh, state.shape, pencil.on_nodes(state.pencil, lowest.vectors))
     return Solved(
         omega,
@@ -118,7 +118,7 @@ def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None
         strain,
         mesh.elements,
         seconds=time.perf_counter() - begun,
-        start=Start(latest, basis),
+        start=Start(previous, basis),
     )
 
 

@@ -11,7 +11,7 @@ from . import extrapolation
 Array = NDArray[Any]
 State = TypeVar("State")
 
-LATEST = 8
+MAX_PREVIOUS = 8
 """Number of states from which the next one is extrapolated."""
 
 _FIRST_STRIDE = 0.5  # fraction of the path
@@ -31,11 +31,11 @@ def follow(solve: Callable[[float, Array], tuple[State, Array] | None], start: A
     Returns:
         The fraction of the path that was followed, and the state there; None if it is 0.
     """
-    latest, state = {0.0: start}, None
+    previous, state = {0.0: start}, None
     reached, stride = 0.0, _FIRST_STRIDE
     for _ in range(_MAX_STATES):
         fraction = min(1.0, reached + stride)
-        solution = solve(fraction, extrapolated(latest, fraction))
+        solution = solve(fraction, extrapolated(previous, fraction))
         if solution is None:
             stride *= 0.5
             if stride < max(_MIN_STRIDE * reached, _MIN_FIRST_STRIDE):
@@ -44,13 +44,13 @@ def follow(solve: Callable[[float, Array], tuple[State, Array] | None], start: A
         state, coordinates = solution
         if fraction == 1.0:
             return 1.0, state
-        latest = dict([*latest.items(), (fraction, coordinates)][-LATEST:])
+        previous = dict([*previous.items(), (fraction, coordinates)][-MAX_PREVIOUS:])
         reached, stride = fraction, 2.0 * stride
     return reached, state
 
 
-def extrapolated(latest: Mapping[float, Array], at: float) -> Array:
-    """The coordinates at ``at`` from those at other values of the same parameter, the latest last."""
-    if at in latest:
-        return latest[at]
-    return extrapolation.at_zero(np.array(list(latest)) - at, np.array(list(latest.values())))
+def extrapolated(previous: Mapping[float, Array], at: float) -> Array:
+    """The coordinates at ``at`` from those at other values of the same parameter, the last one last."""
+    if at in previous:
+        return previous[at]
+    return extrapolation.at_zero(np.array(list(previous)) - at, np.array(list(previous.values())))

@@ -229,7 +229,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     frame = (to_a @ ya[..., None])[..., 0]
     fall = to_a @ np.concatenate([tree.mechanism.gravity, np.zeros(3)])
     x = sp.inverse(xa) @ xb
-    beta = k.q[batch.inner[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
+    beta = k.q[batch.first_internal[:, None] + np.arange(6)] if massive else np.zeros((len(a), 0))
     load_axes = np.concatenate([k.poses, np.eye(4)[None]])[batch.axes, :3, :3]
     axes = np.swapaxes(xa[:, :3, :3], -1, -2) @ load_axes
     p = bm.pencil(bm.relative_pencil(batch.beams, x, beta, frame, fall, axes=axes))
@@ -246,7 +246,7 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     K = K - C @ ad_frame + M @ ad_frame @ ad_frame
     C = C - 2.0 * M @ ad_frame
     to_ground = np.swapaxes(local, -1, -2)
-    ends = np.column_stack([batch.ends, batch.inside]) if massive else batch.ends
+    ends = np.column_stack([batch.ends, batch.internal_row]) if massive else batch.ends
     spring = np.swapaxes(to_a, -1, -2) @ p.spring @ to_a
     residual = (to_ground @ p.residual[..., None])[..., 0]
     out.add(ends, bm.Pencil(residual, to_ground @ M @ local, to_ground @ C @ local, to_ground @ K @ local, spring))

@@ -12,7 +12,7 @@ namespace southwell {
 template <int D>
 struct Factors {
     Matrix<D - 6, D - 6>* flexibility;
-    Matrix<6, D - 6>* ride;
+    Matrix<6, D - 6>* transfer;
     Matrix<D - 6, 6>* reaction;
 };
 
@@ -62,7 +62,7 @@ int eliminate(const ElementMatrices<D>& K, const Links& links, const Factors<D>&
         if (kind == 0) break;
         if (joint) clamp(links.clamped[k], 0.0, H);
         add(block<6, 6>(H, 0, 0), 0, 0, P[links.parent[k]]);
-        out.ride[k] = -1.0 * transposed(block<d, 6>(H, 6, 0));
+        out.transfer[k] = -1.0 * transposed(block<d, 6>(H, 6, 0));
         out.reaction[k] = transposed(block<6, d>(H, 0, 6));
         out.flexibility[k] = transposed(block<d, d>(H, 6, 6));
     }
@@ -93,7 +93,7 @@ void solve(const Factors<D>& f, const Links& links, double* const (&x)[V]) {
             for (int v = 0; v < V; ++v)
                 for (int i = 0; i < d; ++i) here[v][i] += f.flexibility[k][j][i] * x[v][d * k + j];
         for (int v = 0; v < V; ++v) {  // last, since only this step depends on the previous element
-            here[v] = here[v] + transposed_times(f.ride[k], at_a[v]);
+            here[v] = here[v] + transposed_times(f.transfer[k], at_a[v]);
             for (int i = 0; i < d; ++i) x[v][d * k + i] = here[v][i];
             xi[k + 1][v] = outwards(links.to_child[k], x[v] + d * k, at_a[v]);
         }

@@ -30,14 +30,14 @@ class Factor(NamedTuple):
 
     Attributes:
         flexibility: (n, d, d) Gᵀ.
-        ride: (n, 6, d) Vᵀ.
+        transfer: (n, 6, d) Vᵀ.
         reaction: (n, d, 6) Rᵀ.
         links: the tree.
         positive: whether K is positive definite.
     """
 
     flexibility: Array
-    ride: Array
+    transfer: Array
     reaction: Array
     links: Links
     positive: bool
@@ -53,15 +53,15 @@ def factor(K: Array, links: Links) -> Factor:
     Raises:
         numpy.linalg.LinAlgError: if K is singular.
     """
-    worst_pivot, flexibility, ride, reaction = kernels.factor(K, links.arrays)
+    worst_pivot, flexibility, transfer, reaction = kernels.factor(K, links.arrays)
     if worst_pivot == 0:
         raise np.linalg.LinAlgError("singular")
-    return Factor(flexibility, ride, reaction, links, worst_pivot == 2)
+    return Factor(flexibility, transfer, reaction, links, worst_pivot == 2)
 
 
 def solve(f: Factor, x: Array) -> None:
     """Replace loads (k, dn) by the displacements. Loads on clamped directions have no effect."""
-    kernels.solve(f.flexibility, f.ride, f.reaction, f.links.arrays, x)
+    kernels.solve(f.flexibility, f.transfer, f.reaction, f.links.arrays, x)
 
 
 def solution(f: Factor, b: Array) -> Array:

@@ -22,7 +22,7 @@ def coordinate_units(tree: Tree, length: float) -> Array:
             continue
         displacement = np.zeros((len(batch.index), 6))
         np.maximum.at(displacement, batch.beams.points.element, np.abs(batch.beams.points.bubble / twist).max(1))
-        units[batch.inner[:, None] + np.arange(6)] = 1.0 / np.where(displacement > 0, displacement, 1.0)
+        units[batch.first_internal[:, None] + np.arange(6)] = 1.0 / np.where(displacement > 0, displacement, 1.0)
     return units
 
 

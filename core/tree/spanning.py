@@ -34,9 +34,9 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     bodies = (*names, *(f"{joint.child} beyond {joint.name}" for joint in cuts))
     inertia = [*(b.inertia for b in mechanism.bodies), *np.zeros((len(cuts), 6, 6))]
     links = [*(placement[name] for name in names), *copies]
-    inner = [_inner(added, k, beam.beams.inner) for k, beam in enumerate(mechanism.beams)]
+    first = [_inner(added, k, beam.beams.inner) for k, beam in enumerate(mechanism.beams)]
     n = len(added.names)
-    parent, inside = np.array(added.parent, dtype=np.intp), np.array([j for j in inner if j >= 0], dtype=np.intp)
+    parent, internal = np.array(added.parent, dtype=np.intp), np.array([j for j in first if j >= 0], dtype=np.intp)
     link = np.array([k for k, _ in links], dtype=np.intp)
     tree = Tree(
         mechanism=mechanism,
@@ -50,8 +50,8 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         inertia=np.array(inertia),
         welds=tuple(zip(originals, range(len(names), len(bodies)), strict=True)),
         weld_names=tuple(j.name for j in cuts),
-        first_internal=inside,
-        batches=_batches(mechanism, inner, {name: k for k, name in enumerate(bodies)}),
+        first_internal=internal,
+        batches=_batches(mechanism, first, {name: k for k, name in enumerate(bodies)}),
     )
     _check_axes(tree)
     return tree
@@ -132,9 +132,9 @@ def _check_axes(tree: Tree) -> None:
             )
 
 
-def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
-    """Beams in batches of one kind; ``inner``: the first internal coordinate of each beam, or −1."""
-    rows = np.where(np.array(inner, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(inner) >= 0) - 1, -1)
+def _batches(mechanism: Mechanism, first: list[int], bodies: dict[str, int]) -> tuple[Batch, ...]:
+    """Beams in batches of one kind; ``first``: the first internal coordinate of each beam, or −1."""
+    rows = np.where(np.array(first, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(first) >= 0) - 1, -1)
     by_kind: dict[tuple[str, int], list[int]] = {}
     for k, beam in enumerate(mechanism.beams):
         by_kind.setdefault((beam.beams.law.measure, beam.beams.inner), []).append(k)
@@ -146,8 +146,8 @@ def _batches(mechanism: Mechanism, inner: list[int], bodies: dict[str, int]) -> 
             Batch(
                 index=np.array(index, dtype=np.intp),
                 ends=np.array(ends, dtype=np.intp),
-                inner=np.array([inner[k] for k in index], dtype=np.intp),
-                inside=rows[index],
+                first_internal=np.array([first[k] for k in index], dtype=np.intp),
+                internal_row=rows[index],
                 beams=_together([b.beams for b in some]),
                 at_a=np.array([b.at_a for b in some]),
                 at_b=np.array([b.at_b for b in some]),

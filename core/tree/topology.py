@@ -21,8 +21,8 @@ class Batch:
     Attributes:
         index: (e,) which of the mechanism's beams.
         ends: (e, 2) body indices, −1 for the ground.
-        inner: (e,) the first of six internal coordinates, −1 if there are none.
-        inside: (e,) row of the internal coordinates, after those of the bodies, −1 if there are none.
+        first_internal: (e,) the first of six internal coordinates, −1 if there are none.
+        internal_row: (e,) row of the internal coordinates, after those of the bodies, −1 if there are none.
         beams: the elements.
         at_a, at_b: (e, 4, 4) poses of their end frames in the bodies.
         axes: (e,) index of the body in whose axes the loads on the points are given, −1 for the ground.
@@ -31,8 +31,8 @@ class Batch:
 
     index: NDArray[np.intp]
     ends: NDArray[np.intp]
-    inner: NDArray[np.intp]
-    inside: NDArray[np.intp]
+    first_internal: NDArray[np.intp]
+    internal_row: NDArray[np.intp]
     beams: Beams
     at_a: Array
     at_b: Array

@@ -21,7 +21,7 @@ from ..matrices import rotating
 from ..matrices.quadratic import damped_modes
 from ..matrices.rescaling import in_own_length
 from ..protocol.interface import CodeError, Independence, MechanismAdapter, MechanismModes, extra
-from .plant import Plant, Tangent
+from .pinocchio_tree import PinocchioTree, Tangent
 from .spanning import spanning
 
 Array = NDArray[np.float64]
@@ -115,27 +115,27 @@ def _whirling(mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismMode
     Raises:
         CodeError: loops, or matrices that change with the azimuth.
     """
-    plant = Plant(mechanism)
-    names = plant.tree.names
-    spin = int(np.abs(plant.v).argmax())
+    model = PinocchioTree(mechanism)
+    names = model.tree.names
+    spin = int(np.abs(model.v).argmax())
     prescribed = [names.index(m.coordinate) for m in mechanism.motions if m.prescribed]
     free = np.setdiff1d(np.arange(len(names)), prescribed)
     q = np.array([guess.get(name, 0.0) for name in names])
     q[spin] = 0.0
-    q = _steady_state(plant, q, free)
-    if len(plant.at(q).J):
+    q = _steady_state(model, q, free)
+    if len(model.at(q).J):
         raise CodeError("loops in a rotor with equal blades: not supported")
 
     def at(psi: float) -> tuple[Array, Array, Array]:
         turned = q.copy()
         turned[spin] = psi
-        here = plant.at(turned)
+        here = model.at(turned)
         pick = np.ix_(free, free)
         return here.M[pick], here.C[pick], here.K[pick]
 
     place = {names[j]: k for k, j in enumerate(free)}
     groups = [[place[name] for name in group] for group in mechanism.equal_blades]
-    values, x = rotating.modes(at, float(plant.v[spin]), groups)
+    values, x = rotating.modes(at, float(model.v[spin]), groups)
     shapes = np.zeros((len(values), len(names)), np.complex128)
     shapes[:, free] = x.T
     return MechanismModes(names, q, values, shapes)
@@ -147,24 +147,24 @@ def linearize(mechanism: Mechanism, guess: Mapping[str, float]) -> Reduced:
     Raises:
         CodeError: no steady state near the guess, loops that move in it, or matrices that change with the azimuth.
     """
-    plant = Plant(mechanism)
-    names = plant.tree.names
+    model = PinocchioTree(mechanism)
+    names = model.tree.names
     q = np.array([guess.get(name, 0.0) for name in names])
     for m in mechanism.motions:
         if m.position is not None:
             q[names.index(m.coordinate)] = m.position
     moved = [names.index(m.coordinate) for m in mechanism.motions]
-    q = _steady_state(plant, q, np.setdiff1d(np.arange(len(q)), moved))
+    q = _steady_state(model, q, np.setdiff1d(np.arange(len(q)), moved))
     prescribed = [names.index(m.coordinate) for m in mechanism.motions if m.prescribed]
     free = np.setdiff1d(np.arange(len(q)), prescribed)
-    here = plant.at(q)
+    here = model.at(q)
     if here.reversed:
         raise CodeError(f"joint {here.reversed!r} closes with opposed axes: give a better guess")
-    if np.abs(here.J @ plant.v).max(initial=0.0) > RANK * np.abs(plant.v).max(initial=0.0):
+    if np.abs(here.J @ model.v).max(initial=0.0) > RANK * np.abs(model.v).max(initial=0.0):
         raise CodeError("the loops move in the steady state: only mechanisms that rotate as a whole are supported")
     null = null_space(here.J[:, free])
     out = Reduced(names, q, free, null, *reduced(here, free, null))
-    _check_constant(plant, out)
+    _check_constant(model, out)
     return out
 
 
@@ -186,7 +186,7 @@ def null_space(J: Array) -> Array:
     return scipy.linalg.null_space(J, rcond=RANK) if len(J) else np.eye(J.shape[1])
 
 
-def _steady_state(plant: Plant, q: Array, free: Index) -> Array:
+def _steady_state(model: PinocchioTree, q: Array, free: Index) -> Array:
     """Newton's method: close the loops and balance the forces in their null space.
 
     Raises:
@@ -194,7 +194,7 @@ def _steady_state(plant: Plant, q: Array, free: Index) -> Array:
     """
     q, last_change = q.copy(), np.inf
     for _ in range(100):
-        here = plant.at(q)
+        here = model.at(q)
         J, force = here.J[:, free], here.force[free]
         gap = np.array([f.value for f in here.loops])
         close = _least_squares(J, -gap)
@@ -206,7 +206,7 @@ def _steady_state(plant: Plant, q: Array, free: Index) -> Array:
         change = float(np.abs(step).max(initial=0.0))
         q[free] += step * min(1.0, 0.3 / max(change, 0.3))
         if change < 1e-13 or (change < 1e-9 and change > 0.3 * last_change):
-            _check_balance(plant, q, free)
+            _check_balance(model, q, free)
             return q
         last_change = change
     raise CodeError("no steady state near the guess: give a better guess")
@@ -218,28 +218,28 @@ def _least(K: Array, force: Array) -> Array:
     return np.linalg.lstsq(K / size / size[:, None], force / size, rcond=1e-12)[0] / size
 
 
-def _check_balance(plant: Plant, q: Array, free: Index) -> None:
+def _check_balance(model: PinocchioTree, q: Array, free: Index) -> None:
     """Check that the unbalanced forces are small compared with the stiffness.
 
     Raises:
         CodeError: they are not, as for a mass in free fall.
     """
-    here = plant.at(q)
+    here = model.at(q)
     unbalanced = np.abs(null_space(here.J[:, free]).T @ here.force[free]).max(initial=0.0)
     if unbalanced > 1e-8 * np.abs(here.force[free]).max(initial=0.0) + 1e-12 * np.abs(here.K).max(initial=0.0):
         raise CodeError("no steady state near the guess: unbalanced forces remain")
 
 
-def _check_constant(plant: Plant, linear: Reduced) -> None:
+def _check_constant(model: PinocchioTree, linear: Reduced) -> None:
     """Compare the reduced matrices with those at another azimuth.
 
     Raises:
         CodeError: they differ: the equations are periodic.
     """
-    fastest = float(np.abs(plant.v).max(initial=0.0))
+    fastest = float(np.abs(model.v).max(initial=0.0))
     if not fastest or not linear.null.shape[1]:
         return
-    later = plant.at(linear.q + plant.v * (AZIMUTH / fastest))
+    later = model.at(linear.q + model.v * (AZIMUTH / fastest))
     open_ = max((abs(f.value) for f in later.loops), default=0.0)
     moved = np.abs(later.J[:, linear.free] @ linear.null).max(initial=0.0)
     first, second = (linear.M, linear.C, linear.K), reduced(later, linear.free, linear.null)

@@ -23,7 +23,7 @@ from ..protocol.interface import CodeError
 Array = NDArray[np.float64]
 Matrix = Array | sp.spmatrix | sp.sparray | spla.LinearOperator
 Solve = Callable[[Array], Array]
-Pairs = tuple[Array, NDArray[np.complex128]]
+Eigenpairs = tuple[Array, NDArray[np.complex128]]
 
 DENSE = 150
 """Size above which iteration for a few modes of full matrices is faster than a direct solution for all."""
@@ -35,7 +35,7 @@ ASYMMETRY = 1e-6
 """Largest asymmetry attributed to rounding or finite differences, relative to a unit diagonal of K."""
 
 
-def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Pairs:
+def gyroscopic_modes(M: Matrix, C: Matrix, K: Matrix, count: int) -> Eigenpairs:
     """The ``count`` lowest modes of ``M q̈ + C q̇ + K q = 0``.
 
     With ``K = L Lᵀ`` and ``M = F Fᵀ`` the states ``(Lᵀ q, Fᵀ q̇)`` make the inverse problem skew, hence i times it
@@ -149,7 +149,7 @@ def _factor(K: Any) -> Solve:
     return factor.solve
 
 
-def _direct(M: Array, C: Array, K: Array, count: int) -> Pairs:
+def _direct(M: Array, C: Array, K: Array, count: int) -> Eigenpairs:
     """1/ω and shapes, by all of the Hermitian problem."""
     n = len(K)
     L = scipy.linalg.cholesky(K, lower=True)
@@ -169,7 +169,7 @@ def _direct(M: Array, C: Array, K: Array, count: int) -> Pairs:
     return inverse, scipy.linalg.solve_triangular(L, y[:n], lower=True, trans=1)
 
 
-def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
+def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Eigenpairs:
     """1/ω and shapes, by Arnoldi's method on A⁻¹S with A = diag(K, M), S = [[-C, -M], [M, 0]]."""
     n = K.shape[0]
     start = np.random.default_rng(0).standard_normal(2 * n)
@@ -197,7 +197,7 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Pairs:
     raise CodeError(f"eigenproblem: ARPACK did not converge for {k} eigenvalues of {2 * n}: request fewer modes")
 
 
-def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Pairs:
+def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Eigenpairs:
     """Modes from eigenvalues 1/ω: the positive ones, ascending in ω, largest entry 1."""
     keep = np.flatnonzero(inverse > 1e-12 * inverse.max())
     keep = keep[np.argsort(-inverse[keep])][:count]

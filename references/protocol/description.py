@@ -19,7 +19,7 @@ from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from . import boundary, registry
 from .boundary import NonsenseError
-from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, MechanismAdapter, Motion, Shares, shares
+from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, MechanismAdapter, Motion, SharedWithCore, shares
 from .process import Failure, Limits, converse, one_line, raised
 from .registry import UnknownCodeError
 from .turbines import TurbineAdapter
@@ -70,7 +70,7 @@ class Description:
     failure: Failure | None = None
 
     @property
-    def shares(self) -> Shares:
+    def shares(self) -> SharedWithCore:
         """What it shares with core."""
         return shares(self.independence)
 
@@ -92,8 +92,8 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
     descriptions = {description.asked: description for description in _asked(bundled, encoded, limits)}
     unanswered = [name for name in where if name not in descriptions or descriptions[name].failure]
     with ThreadPoolExecutor(TOGETHER) as threads:
-        again = threads.map(lambda name: _asked({name: where[name]}, encoded, limits)[0], unanswered)
-        descriptions |= zip(unanswered, again, strict=True)
+        alone = threads.map(lambda name: _asked({name: where[name]}, encoded, limits)[0], unanswered)
+        descriptions |= zip(unanswered, alone, strict=True)
     for description in descriptions.values():
         mistyped = ":" in description.asked
         if description.failure and description.failure.kind == "unknown" and mistyped:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 Complex = NDArray[np.complex128]
 
-Shares = Literal["nothing", "mechanical model", "discretisation", "undeclared"]
+SharedWithCore = Literal["nothing", "mechanical model", "discretisation", "undeclared"]
 
 Motion = Literal["axial", "edgewise", "flapwise", "torsion"]
 
@@ -78,7 +78,7 @@ def extra(name: str) -> str:
     return f"pip install '.[{name}]' in a checkout of Southwell"
 
 
-def shares(independence: Independence | None) -> Shares:
+def shares(independence: Independence | None) -> SharedWithCore:
     """What a code with these origins shares with core."""
     if independence is None:
         return "undeclared"

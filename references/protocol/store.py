@@ -154,7 +154,7 @@ class Store:
 
 def _prepare(base: sqlite3.Connection) -> None:
     """Set the mode and make the table; SQLite does not wait by itself where two processes set the mode of a new file."""
-    latest = time.monotonic() + WAITING
+    deadline = time.monotonic() + WAITING
     while True:
         try:
             base.execute("pragma journal_mode = wal")
@@ -162,7 +162,7 @@ def _prepare(base: sqlite3.Connection) -> None:
             base.execute(SCHEMA)
             return
         except sqlite3.OperationalError as error:
-            if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or time.monotonic() > latest:
+            if error.sqlite_errorcode & 0xFF != sqlite3.SQLITE_BUSY or time.monotonic() > deadline:
                 raise
             time.sleep(0.01)
 

@@ -17,14 +17,14 @@ def strains(y: ArrayLike, z: ArrayLike, angle: ArrayLike) -> Array:
     The strains at the reference point, in section axes, are (γ_x, γ_y, γ_z, κ_x, κ_y, κ_z).
     """
     y, z, angle = np.broadcast_arrays(np.asarray(y, float), np.asarray(z, float), np.asarray(angle, float))
-    c, s, one, none = np.cos(angle), np.sin(angle), np.ones(y.shape), np.zeros(y.shape)
+    c, s, unit, zero = np.cos(angle), np.sin(angle), np.ones(y.shape), np.zeros(y.shape)
     rows = (
-        (one, none, none, none, z, -y),  # γ_x + z κ_y − y κ_z
-        (none, c, s, -c * z + s * y, none, none),  # along y′: (γ_y − z κ_x) cos + (γ_z + y κ_x) sin
-        (none, -s, c, s * z + c * y, none, none),
-        (none, none, none, one, none, none),
-        (none, none, none, none, c, s),
-        (none, none, none, none, -s, c),
+        (unit, zero, zero, zero, z, -y),  # γ_x + z κ_y − y κ_z
+        (zero, c, s, -c * z + s * y, zero, zero),  # along y′: (γ_y − z κ_x) cos + (γ_z + y κ_x) sin
+        (zero, -s, c, s * z + c * y, zero, zero),
+        (zero, zero, zero, unit, zero, zero),
+        (zero, zero, zero, zero, c, s),
+        (zero, zero, zero, zero, -s, c),
     )
     return np.stack([np.stack(row, axis=-1) for row in rows], axis=-2)
 

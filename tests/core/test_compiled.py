@@ -63,7 +63,7 @@ WRONG = [
     (lambda: kernels.product(P.K[:, :9, :9].copy(), 1.0, L, VECTOR), ValueError, r"12, 12\) or \(n, 18, 18"),
     (lambda: kernels.product(P.K, 1.0, SHORT, VECTOR), ValueError, "another number of links"),
     (lambda: kernels.negative_pivots(P.K, P.C[:-1], P.M, L, 1.0), ValueError, "numbers"),
-    (lambda: kernels.solve(F.flexibility, F.ride[:-1], F.reaction, L, VECTOR), ValueError, "numbers"),
+    (lambda: kernels.solve(F.flexibility, F.transfer[:-1], F.reaction, L, VECTOR), ValueError, "numbers"),
     (lambda: kernels.displaced(BODY.parent, BODY.between[:-1].copy(), np.zeros((4, 12))), ValueError, "numbers"),
     (lambda: kernels.Links(np.array([0, 2]), np.zeros((2, 6, 6)), np.zeros((0, 6, 6))), ValueError, "before its child"),
     (lambda: kernels.exp(np.zeros(5)), ValueError, "numbers"),
@@ -81,11 +81,11 @@ def test_results_are_not_written_to_arrays_that_are_read_only() -> None:
     fixed = VECTOR.copy()
     fixed.flags.writeable = False
     with pytest.raises(ValueError, match=r"writ|read-only"):
-        kernels.solve(F.flexibility, F.ride, F.reaction, L, fixed)
+        kernels.solve(F.flexibility, F.transfer, F.reaction, L, fixed)
 
 
 def test_a_block_has_at_most_eight_vectors() -> None:
-    a = kernels.Operator(P.M, P.C, P.K, L, F.flexibility, F.ride, F.reaction, *np.zeros((2, 0, 6, 6)))
+    a = kernels.Operator(P.M, P.C, P.K, L, F.flexibility, F.transfer, F.reaction, *np.zeros((2, 0, 6, 6)))
     basis, projected = np.zeros((20, 2 * VECTOR.size)), np.zeros((20, 20))
     for w, size in ((np.ones((9, 2 * VECTOR.size)), 0), (np.ones((1, 2 * VECTOR.size)), 21)):
         with pytest.raises(ValueError, match="at most eight vectors"):

@@ -124,7 +124,7 @@ def test_every_mistake_fails_a_check(fault: str) -> None:
 
 def test_a_mistake_in_each_stage_of_the_reduction_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
     """The adapter with its reduction's derivative left out, and with its links in another order than Pinocchio needs."""
-    linkages = pytest.importorskip("southwell.references.linkages.plant")
+    linkages = pytest.importorskip("southwell.references.linkages.pinocchio_tree")
     spanning = pytest.importorskip("southwell.references.linkages.spanning")
     code = registry.code("pinocchio-loops")
     if code.version() is None:

@@ -49,13 +49,15 @@ def test_the_body_of_a_uniform_beam_follows_its_cubic() -> None:
     """Mean of w = v (3t² − 2t³) + θ l (t³ − t²): displacement v/2 − θ l/12, rotation 6 v/5 l − θ/10 (by least squares)."""
     length = 0.5
     k12, _, undeformed = beam_segment(length)
-    ride = segment_from_matrix(k12, undeformed, np.eye(6)).ride
+    body_twist = segment_from_matrix(k12, undeformed, np.eye(6)).body_twist
     b = sp.adjoint(sp.inverse(undeformed))  # ρ is at a's origin; the cubic's v and θ are at b
-    ride = ride @ np.linalg.inv(b)
+    body_twist = body_twist @ np.linalg.inv(b)
     centre = at(-0.5 * length)
-    ride = sp.adjoint(centre) @ ride  # at the middle
-    np.testing.assert_allclose(ride[np.ix_([1, 5], [1, 5])], [[0.5, -length / 12], [1.2 / length, -0.1]], rtol=1e-8)
-    np.testing.assert_allclose(ride[np.ix_([0, 3], [0, 3])], 0.5 * np.eye(2), atol=1e-8)
+    body_twist = sp.adjoint(centre) @ body_twist  # at the middle
+    np.testing.assert_allclose(
+        body_twist[np.ix_([1, 5], [1, 5])], [[0.5, -length / 12], [1.2 / length, -0.1]], rtol=1e-8
+    )
+    np.testing.assert_allclose(body_twist[np.ix_([0, 3], [0, 3])], 0.5 * np.eye(2), atol=1e-8)
 
 
 def uniform_segments(n: int) -> list[Segment]:
@@ -72,9 +74,9 @@ def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
 
 
 def test_two_joined_segments_are_one_of_twice_the_length() -> None:
-    """``ride`` differs by the rotary inertia of the sections, which ``segment_from_matrix`` neglects."""
+    """``body_twist`` differs by the rotary inertia of the sections, which ``segment_from_matrix`` neglects."""
     for found, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
-        for field, within in (("undeformed", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("ride", 5e-3)):
+        for field, within in (("undeformed", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("body_twist", 5e-3)):
             wanted = getattr(expected, field)
             np.testing.assert_allclose(getattr(found, field), wanted, atol=within * np.abs(wanted).max())
     assert len(joined(uniform_segments(7))) == 4

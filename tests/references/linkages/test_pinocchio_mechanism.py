@@ -13,7 +13,7 @@ from southwell.core.mechanism.joints import SCREWS, Kind
 from southwell.core.rank import ranked
 from southwell.core.tree.spanning import compile_tree
 from southwell.references.linkages import mechanism as lm
-from southwell.references.linkages.plant import Plant
+from southwell.references.linkages.pinocchio_tree import PinocchioTree
 from southwell.references.linkages.spanning import AXES, spanning
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.linkages import (
@@ -104,7 +104,7 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
     assert_agreement(m, dict(zip(found.linear.tree.coordinates, state.q.tolist(), strict=True)))
 
 
-def every_element() -> tuple[Plant, np.ndarray]:
+def every_element() -> tuple[PinocchioTree, np.ndarray]:
     """A plant with a loop of every kind, a spring between points and a load, at a configuration where no term vanishes."""
     rng = np.random.default_rng(3)
     m, _ = random_loop(["spherical", "cylindrical", "universal"], "revolute", [False, True, False, False, False], 5)
@@ -116,7 +116,7 @@ def every_element() -> tuple[Plant, np.ndarray]:
     m = replace(
         m, joints=(*m.joints[:-1], *loops), springs=(spring,), loads=(Load("b2", rng.normal(size=3), "ground"),)
     )
-    plant = Plant(m)
+    plant = PinocchioTree(m)
     return plant, rng.normal(size=len(plant.v))
 
 
@@ -149,14 +149,14 @@ def test_a_loop_joint_leaves_only_its_coordinates_free(kind: Kind) -> None:
         mb.at(0.1, 0.4, 0, axis=np.array([0.2, 1.0, -1.0])),
     ]
     tied = mb.Mechanism((mb.Body("b"),), (mb.Joint("j", kind, "ground", "b", frames[0], frames[1]),))
-    tree = Plant(tied)
+    tree = PinocchioTree(tied)
     at = np.linspace(0.2, 0.7, len(tree.v))
     pose = np.eye(4)
     for link, value in zip(tree.tree.links, at, strict=True):
         pose = pose @ link.frame @ np.array(mb.at()) @ _moved(link.axis, link.turns, value)
     pose = pose @ (tree.tree.bodies["b"][1] if len(at) else frames[0] @ np.linalg.inv(frames[1]))
     loose = mb.Joint("loose", "free", "ground", "b", np.eye(4), np.asarray(np.linalg.inv(pose), float))
-    plant = Plant(replace(tied, joints=(loose, replace(tied.joints[0], cut=True))))
+    plant = PinocchioTree(replace(tied, joints=(loose, replace(tied.joints[0], cut=True))))
     here = plant.at(np.zeros(6))
     np.testing.assert_allclose([f.value for f in here.loops], 0.0, atol=1e-12)
     assert not here.reversed

@@ -74,7 +74,7 @@ def in_house() -> list:
 
 
 def assert_same(
-    found: list, expected: list, within: float = 1e-8, fields: str = "undeformed stiffness inertia ride"
+    found: list, expected: list, within: float = 1e-8, fields: str = "undeformed stiffness inertia body_twist"
 ) -> None:
     for a, b in zip(found, expected, strict=True):
         for field in fields.split():

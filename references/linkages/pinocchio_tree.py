@@ -55,7 +55,7 @@ def _pinocchio() -> Any:
     return pinocchio
 
 
-class Plant:
+class PinocchioTree:
     """A mechanism in Pinocchio; ``tree`` is its spanning tree, ``v`` (n,) the rates of its motions."""
 
     def __init__(self, mechanism: Mechanism) -> None:
