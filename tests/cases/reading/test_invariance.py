@@ -142,7 +142,7 @@ def test_a_mistake_of_a_convention_is_named(name: str, monkeypatch: pytest.Monke
 def test_only_blades_of_users_are_described_otherwise() -> None:
     (subject,) = blades(library.load("pretwisted-beam"))
     assert not subject.users
-    assert replace(subject, case=replace(subject.case, path="/home/me/blade.toml")).users
+    assert replace(subject, case=replace(subject.case, path="elsewhere/blade.toml")).users
 
 
 def test_a_change_ends_a_run_with_status_1() -> None:
