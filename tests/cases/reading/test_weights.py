@@ -39,7 +39,7 @@ def tapered(**changes: Any) -> Blade:
 
 
 def crooked() -> Blade:
-    """Prebent, swept, preconed, pitched, with shear, mass centres off the axis and a tip mass off the axis."""
+    """Prebent, swept, preconed, pitched, with unequal shear, mass centres off the axis and a tip mass off the axis."""
     fine = np.linspace(0.0, 20.0, 40001)
     curve = np.stack([fine, 1.2 * (fine / 20.0) ** 2, -2.0 * (fine / 20.0) ** 3], axis=1)
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(curve, axis=0), axis=1))])
@@ -54,7 +54,7 @@ def crooked() -> Blade:
         stations=s,
         twist=np.interp(s, S, [0.2, 0.15, 0.05, 0.0]),
         mass=shift.T @ section_mass(per_length, 0.02 * per_length, 0.1 * per_length) @ shift,
-        stiffness=section_stiffness(1e9, 1e7, 1e7, 4e7, 1e8, 1e8) * (per_length / 90)[:, None, None],
+        stiffness=section_stiffness(1e9, 1e7, 1e7, 4e7, 2e6, 5e6) * (per_length / 90)[:, None, None],
         curve=curve[::4000],
         precone=-0.08,
         tip_mass=shift.T @ tip @ shift,
