@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..input.errors import CaseError
+from . import linearised
 from .user_results import Defaults, UserResults, read
 
 
@@ -37,7 +38,7 @@ def user_results(text: str, u: Defaults) -> UserResults:
     name, equals, path = text.partition("=")
     if not (equals and path and re.fullmatch(r"\w[\w .+-]{0,99}", name)):
         raise CaseError(f"--add {text}: give a name and a file, as in --add rig=results.csv")
-    return read(name, Path(path), u)
+    return linearised.read(name, path) if linearised.matches(path) else read(name, Path(path), u)
 
 
 def check(files: Sequence[UserResults], data: str | None, inputs: str | None) -> None:

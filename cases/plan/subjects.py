@@ -15,7 +15,7 @@ from ..input.library import is_blade_file
 from ..input.machines import turbines
 from ..input.readers import BladeFile, Mount
 from ..input.schema import Case
-from . import mechanism, turbine
+from . import linearised, mechanism, turbine
 from .blade import blades
 from .request import Request, speeds
 from .subject import Subject
@@ -46,7 +46,7 @@ def _read(
     if not isinstance(subject, str):
         return subject
     if _deck(subject):
-        if not request.blade_only and (whole := _turbine(subject, decks, request.mount)):
+        if not request.blade_only and (whole := _turbine(subject, decks, request)):
             return whole
         return _of_blade_file(subject, decks, request.mount)
     if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
@@ -61,14 +61,19 @@ def _deck(name: str) -> bool:
     return is_blade_file(name) or turbines.is_turbine(Path(name))
 
 
-def _turbine(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> turbine.TurbineSubject | None:
-    """The turbine in a file, at the given speeds or that of the file; None if the file is not that of a turbine."""
+def _turbine(
+    name: str, decks: tuple[tuple[float, ...], bool] | None, request: Request
+) -> turbine.TurbineSubject | None:
+    """The turbine in a file; None if the file is not that of a turbine.
+
+    Speeds that are not given are those of added linearisations, or that of the file.
+    """
     path = Path(name)
     if not turbines.is_turbine(path):
         return None
-    reading = turbines.read(path, mount)
-    at, rpm = decks or ((reading.speed,), True)
-    return turbine.subject(path, reading.turbine, reading.source, at, rpm, mount)
+    reading = turbines.read(path, request.mount)
+    at, rpm = decks or (linearised.speeds(request.add) or (reading.speed,), True)
+    return turbine.subject(path, reading.turbine, reading.source, at, rpm, request.mount)
 
 
 def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case:

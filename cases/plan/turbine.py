@@ -26,6 +26,7 @@ from ..solve.reference import References
 from ..solve.refinement import Refining
 from ..solve.turbine import MOTION, references, refined_code
 from ..solve.turbine_reading import read_again
+from . import linearised
 from .column import Column, absent_work, failing_work, not_installed
 from .settings import NOT_USED
 from .subject import NOT_CHECKED, PropertyChecks
@@ -119,9 +120,10 @@ class TurbineSubject:
         return facts
 
     def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
-        """A column for each code that solves turbines; the others have none, unless there are no other codes."""
+        """A column for each code that solves turbines, and for linearisations; other codes have none, unless they are alone."""
         takers = [code for code in codes if code.turbines or (code.failure and len(codes) == 1)]
-        return [self._column(code, limits) for code in takers or codes]
+        given = linearised.columns(self.name, self.path, self.turbine.blade.pitch, self.target, (MOTION,), added)
+        return [*(self._column(code, limits) for code in takers or codes), *given]
 
     def _column(self, code: Description, limits: Limits) -> Column:
         head = Head(self.name, code.name, code.version or "", "code", self.target, code.shares, (MOTION,))

@@ -30,6 +30,7 @@ from ...references.protocol.interface import MOTIONS
 from ..input import files
 from ..input.errors import CaseError, nearest
 from ..judge.uncertainty import Estimate, from_print
+from ..linearisation.judged import JudgedSet
 from . import bmodes_output
 
 SPEED = {"speed [rad/s]": 1.0, "speed [rpm]": math.pi / 30, "speed [gamma]": 1.0}
@@ -77,12 +78,21 @@ class Given:
 
 @dataclass(frozen=True)
 class UserResults:
-    """The results in a file, their name, and whether they are measured."""
+    """The results in a file.
+
+    Attributes:
+        name: in tables.
+        path: of the file, or the pattern of several.
+        rows: its frequencies.
+        measured: whether they are measured.
+        linearised: linearisations of a turbine, in place of rows.
+    """
 
     name: str
     path: str
     rows: tuple[Given, ...]
     measured: bool = False
+    linearised: tuple[JudgedSet, ...] = ()
 
 
 @dataclass(frozen=True)

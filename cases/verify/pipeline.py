@@ -16,12 +16,13 @@ from ...references.protocol.store import Store
 from ..faults import own, own_reading, own_uncertainty, table
 from ..input.writing import writable
 from ..judge.results import Control, Planned, Run, Setting
-from ..plan import measurements, names, user_results
+from ..plan import linearised, measurements, names, user_results
 from ..plan.blade import BladeSubject
 from ..plan.request import Execution, Request, command_line
 from ..plan.settings import NOT_USED
 from ..plan.subject import Subject, asked_about, speeds_of_blades
 from ..plan.subjects import subjects
+from ..plan.turbine import TurbineSubject
 from ..plan.user_results import UserResults
 from ..run.executors import Serial, executor
 from ..run.software import Software
@@ -118,6 +119,7 @@ def planned(request: Request, observer: Observer) -> Plan:
     measurements.check(added, request.data_uncertainty, request.input_uncertainty)
     names.unique(chosen, codes, added)
     user_results.check(added, speeds_of_blades(chosen), [c.name for c in codes])
+    linearised.check(added, [subject.name for subject in chosen if isinstance(subject, TurbineSubject)])
     about = Run(
         cells=(),
         versions=matrix.versions(codes, added),

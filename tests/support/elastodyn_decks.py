@@ -19,7 +19,7 @@ TOWER_SHAPES = {"TwFAM1Sh": (0.9, 0.2, -0.1), "TwSSM1Sh": (1.1, 0.1, -0.2)}
 OMEGA = 2.5
 
 
-def shaped(folder: Path, nodes: int = 12) -> Path:
+def shaped(folder: Path, nodes: int = 12, pitch: float = 2.0) -> Path:
     """Write the deck of ``turbine_decks`` with assumed shapes; return its primary file."""
     path = deck(folder, free=True)
     for name, shapes in (("blade.dat", SHAPES), ("tower.dat", TOWER_SHAPES)):
@@ -31,7 +31,7 @@ def shaped(folder: Path, nodes: int = 12) -> Path:
             "\n".join([*lines, "0.5 BldFlDmp(1)", "0.6 BldFlDmp(2)", "0.7 BldEdDmp(1)", "1 TwrSSDmp(1)"]) + "\n"
         )
     main = folder / "main.dat"
-    main.write_text(main.read_text() + f"{nodes} BldNodes\n{nodes} TwrNodes\n2 BlPitch(1)\n")
+    main.write_text(main.read_text() + f"{nodes} BldNodes\n{nodes} TwrNodes\n{pitch} BlPitch(1)\n")
     return path
 
 
@@ -40,12 +40,17 @@ def linearised(deck_: Deck, azimuths: int = 4, omega: float = OMEGA, words: tupl
 
     States whose descriptions have one of ``words`` are locked.
     """
+    return _set(files(deck_, azimuths, omega, words))
+
+
+def files(deck_: Deck, azimuths: int = 4, omega: float = OMEGA, words: tuple[str, ...] = ()) -> list[Lin]:
+    """The files of ``linearised``."""
     lins = [small(without(lin, *words)) for lin in healthy(Machine(omega=omega), azimuths)]
     each = _set(lins)
     made = Models(deck_, each, models.degrees(deck_, each), fields.points(deck_))
     structure = made.structure()
     A = [structure.state_matrix(part, each) for part in models.matrices(structure, each, True, True)]
-    return _set([replace(lin, A=a, decimals=9) for lin, a in zip(lins, A, strict=True)])
+    return [replace(lin, A=a, decimals=9) for lin, a in zip(lins, A, strict=True)]
 
 
 def small(lin: Lin) -> Lin:

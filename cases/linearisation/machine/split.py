@@ -91,8 +91,13 @@ class Beside:
         return self.mode.frequency / self.frequency - 1
 
 
-def compare(judged: JudgedSet, deck: Deck) -> Comparison:
+def compare(judged: JudgedSet, deck: Deck, causes: bool = True) -> Comparison:
     """The structural modes of a set beside those of the deck's turbine.
+
+    Args:
+        judged: the set.
+        deck: of its turbine.
+        causes: whether causes of the rest are sought.
 
     Raises:
         CaseError: the deck is not of this set, or the turbine has no steady state at its speed.
@@ -117,10 +122,10 @@ def compare(judged: JudgedSet, deck: Deck) -> Comparison:
             )
             beyond = (fixed_frame(each, each.A) - fixed_frame(each, model)).mean(axis=0)
         pairs = _besides([*chain, (REST, own)], judged, beyond)
-        causes, remark = _causes(made, last, own, judged, pairs)
+        sought, remark = _causes(made, last, own, judged, pairs) if causes else ((), "")
     except (PeriodicError, *NO_STATE) as error:
         raise CaseError(f"--fst: at {rad_s(each.omega)}: {error}") from error
-    return Comparison(pairs, causes, remark)
+    return Comparison(pairs, sought, remark)
 
 
 def structural(made: Models) -> list[tuple[str, Shapes]]:

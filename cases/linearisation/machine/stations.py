@@ -1,0 +1,80 @@
+"""Modes of a linearisation as motions at the stations of a turbine, in the form of ``core.rotor.stations``, at azimuth 0."""
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ....core.modes import STATIONS
+from ....core.rotor.stations import positions
+from ....core.rotor.turbine import RZ, turned_axes
+from ....core.space import spatial as sp
+from ..modes import Mode
+from ..multiblade import states_of_components
+from ..sets import AzimuthSet
+from ..states import State
+from .deck import Deck
+from .fields import element
+from .tower import field
+
+Array = NDArray[np.float64]
+Complex = NDArray[np.complex128]
+
+
+def motions(deck: Deck, each: AzimuthSet, modes: tuple[Mode, ...]) -> Complex:
+    """(m, 21 (1 + N), 4) displacement and rotation about x of tower and blades in modes, which are in the fixed frame."""
+    P, _ = states_of_components(each, 0.0, each.omega)
+    return np.einsum("kzc,mk->mzc", of_states(deck, each), np.array([P @ mode.shape for mode in modes]))
+
+
+def of_states(deck: Deck, each: AzimuthSet) -> Array:
+    """(s, 21 (1 + N), 4) motions by a unit of each state at azimuth 0; none of rates and of other states."""
+    rate_of, n = dict(each.pairs), len(STATIONS)
+    out = np.zeros((len(each.states), n * (1 + deck.turbine.blades), 4))
+    for k, state in enumerate(each.states):
+        if k not in rate_of:
+            continue
+        if state.blade:
+            own = out[k, n * state.blade : n * (state.blade + 1)]
+            own[:, :3] = _bent(deck, state) @ _axes(deck).T
+            continue
+        tower, hub = _carried(deck, state)
+        out[k, :n, :3] = tower
+        for blade in range(deck.turbine.blades):
+            root = turned_axes(2.0 * np.pi * blade / deck.turbine.blades)[0] @ hub
+            own = out[k, n * (blade + 1) : n * (blade + 2)]
+            own[:, :3] = root[:3] + np.cross(root[3:], positions(deck.turbine.blade))
+            own[:, 3] = root[3]
+    return out
+
+
+def _axes(deck: Deck) -> Array:
+    """(3, 3) axes of a blade without twist in those of its hub."""
+    blade = deck.turbine.blade
+    return np.asarray(sp.rotation(1, np.array(-blade.precone)) @ sp.rotation(0, np.array(blade.pitch)))
+
+
+def _bent(deck: Deck, state: State) -> Array:
+    """(21, 3) displacements of a blade in its axes without twist."""
+    blade = deck.turbine.blade
+    s = STATIONS * blade.length
+    if state.module == "ED" and state.family in deck.blade_shapes:
+        return field(blade, {state.family: deck.blade_shapes[state.family]})(s)[0][0]
+    node, order = state.direction, state.element_order
+    if node and order and node[0] == "translational" and 2 <= node[2] <= order + 1:
+        # BeamDyn: x downwind, y to the trailing edge, z along the blade; here z, −y, x
+        axis, sign = ((2, 1.0), (1, -1.0), (0, 1.0))[node[1]]
+        return sign * element(blade.length, order)(s)[0][3 * (node[2] - 2) + axis]
+    return np.zeros((len(s), 3))
+
+
+def _carried(deck: Deck, state: State) -> tuple[Array, Array]:
+    """(21, 3) displacements of the tower, and the twist (6,) of the hub that does not turn."""
+    tower, none = deck.turbine.tower, np.zeros((len(STATIONS), 3))
+    if state.family in ("generator", "drivetrain"):
+        return none, RZ
+    top = np.zeros(6)
+    if state.family == "yaw":
+        top[3] = 1.0
+    elif state.family in deck.tower_shapes:
+        moved, turned = field(tower, {state.family: deck.tower_shapes[state.family]})(STATIONS * tower.length)
+        none, top = moved[0], np.concatenate([moved[0, -1], turned[0, -1]])
+    return none, sp.adjoint(sp.inverse(deck.turbine.shaft)) @ top
