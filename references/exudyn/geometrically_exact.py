@@ -57,7 +57,12 @@ class ExudynGeometricallyExact(BladeAdapter):
 
     name = "exudyn-beam"
     title = "Exudyn, geometrically exact beam"
-    independence = Independence("Exudyn", "geometrically exact beam on SE(3)", "exudyn-beam's adapter", REFERENCE_LINE)
+    independence = Independence(
+        "Exudyn",
+        "geometrically exact beam on SE(3), masses lumped by the adapter",
+        "exudyn-beam's adapter",
+        REFERENCE_LINE,
+    )
     levels = (12, 24, 48)
     order = 2
     hint = ex.HINT

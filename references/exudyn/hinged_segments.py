@@ -30,6 +30,9 @@ from ..theories.spectral import intervals
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
+SEGMENTS = "rigid segments on elastic hinges, both made by the adapter"
+"""The theory of codes with these links, as named in ``Independence``."""
+
 SLIDE, TURN = (AXIAL, SHEAR_Y, SHEAR_Z), (TORSION, BEND_Z, BEND_Y)
 
 

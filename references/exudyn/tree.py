@@ -24,7 +24,7 @@ from ..protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, CodeError, Independence
 from ..theories.reference_line import steps
 from . import system as ex
-from .hinged_segments import SLIDE, TURN, HingedSegments, hinge_segments
+from .hinged_segments import SEGMENTS, SLIDE, TURN, HingedSegments, hinge_segments
 
 Array = NDArray[np.float64]
 
@@ -41,7 +41,7 @@ class ExudynTree(BladeAdapter):
 
     name = "exudyn-tree"
     title = "Exudyn, kinematic tree"
-    independence = Independence("Exudyn", "rigid segments on elastic hinges", "Exudyn", sections=REFERENCE_LINE)
+    independence = Independence("Exudyn", SEGMENTS, "Exudyn", sections=REFERENCE_LINE)
     effects = ALL_EFFECTS
     levels = (12, 24, 36)
     order = 2

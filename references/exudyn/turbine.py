@@ -21,7 +21,7 @@ from ..theories import turbine_tree
 from ..theories.reference_line import line
 from ..theories.turbine_tree import NOTHING, Body, Chain, TurbineTree
 from . import system as ex
-from .hinged_segments import HingedSegments, hinge_segments, root_segment
+from .hinged_segments import SEGMENTS, HingedSegments, hinge_segments, root_segment
 from .tree import JOINT, linearize
 
 Array = NDArray[np.float64]
@@ -34,7 +34,7 @@ class ExudynTurbine(TurbineAdapter):
     title = "Exudyn, kinematic tree of the turbine"
     independence = Independence(
         "Exudyn",
-        "rigid segments on elastic hinges",
+        SEGMENTS,
         "Exudyn",
         sections=REFERENCE_LINE,
         eigensolver="the adapters' own, in Fourier coordinates of the blades",

@@ -56,8 +56,8 @@ class Independence:
     matrix in ``tests/cases/judge/test_groups.py``.
 
     Attributes:
-        engine: the program that assembles the equations of motion, e.g. ``Exudyn``. If the adapter assembles a part with the
-            program's elements, ``theory`` names it.
+        engine: the program that assembles the equations of motion, e.g. ``Exudyn``. What the adapter makes itself, such as
+            weak forms or lumped masses, is named in ``theory``.
         theory: the derivation and discretisation of the matrices, e.g. ``ANCF cable``.
         rotation: origin of the centrifugal and gyroscopic terms.
         sections: origin of the sections' positions and axes: ``blade`` (a straight axis, twist and pitch as given),

@@ -43,7 +43,7 @@ class ScikitFemBeam(BladeAdapter):
 
     name = "scikit-fem"
     title = "scikit-fem, prestressed beam"
-    independence = Independence("scikit-fem", "prestressed beam", "scikit-fem's adapter")
+    independence = Independence("scikit-fem", "prestressed beam, weak forms of the adapter", "scikit-fem's adapter")
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4

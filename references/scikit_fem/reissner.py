@@ -48,7 +48,10 @@ class ScikitFemReissner(BladeAdapter):
     name = "scikit-fem-reissner"
     title = "scikit-fem, geometrically exact beam"
     independence = Independence(
-        "scikit-fem", "geometrically exact beam", "scikit-fem-reissner's adapter", sections=REFERENCE_LINE
+        "scikit-fem",
+        "mixed geometrically exact beam, weak forms of the adapter",
+        "scikit-fem-reissner's adapter",
+        sections=REFERENCE_LINE,
     )
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 3 * COARSEST)
