@@ -85,8 +85,8 @@ def points(ends: ArrayLike, count: int) -> tuple[Array, Array]:
     """Gauss points and weights (i, count) in each of the intervals between ``ends`` (i+1,), in their unit."""
     ends = np.asarray(ends, float)
     x, weight = np.polynomial.legendre.leggauss(count)
-    middle, half = 0.5 * (ends[1:] + ends[:-1]), 0.5 * np.diff(ends)
-    return middle[:, None] + half[:, None] * x, half[:, None] * weight
+    length = np.diff(ends)[:, None]
+    return ends[:-1, None] + length * (0.5 + 0.5 * x), length * (0.5 * weight)
 
 
 def _table(stations: Array, matrices: Array, s: ArrayLike) -> Array:
