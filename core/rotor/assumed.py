@@ -75,7 +75,7 @@ def restricted_motions(beam: Blade, mesh: Mesh, shapes: Field) -> Array:
     p = pencil.linearize(mesh, pencil.undeformed(mesh), 0.0, np.zeros(3), ALL_EFFECTS)
     n, d = len(mesh.parent), p.M.shape[1] - 6
     axes = mesh.nodes[:, :3, :3]
-    base = axes[0] @ sp.rotation(0, float(beam.twist[0])).T
+    base = axes[0] @ sp.rotation(0, np.array(float(beam.twist[0]))).T
     along = ((mesh.nodes[:, :3, 3] - mesh.nodes[0, :3, 3]) @ base)[:, 0]
     displaced, turned = shapes(along)
     local = base.T @ axes

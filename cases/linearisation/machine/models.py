@@ -6,6 +6,7 @@ operating point. Each has the degrees of freedom that the linearisation's states
 """
 
 from dataclasses import dataclass
+from typing import cast
 
 import numpy as np
 from numpy.typing import NDArray
@@ -162,10 +163,12 @@ def matrices(model: Structure, each: AzimuthSet, gravity: bool, deflected: bool)
 
 def of_states(models: Models, A: Array) -> Shapes:
     """Modes of state matrices (azimuth, s, s) in the states of the set, of their mean in the fixed frame."""
-    values, vectors = np.linalg.eig(fixed_frame(models.each, A).mean(axis=0).astype(np.complex128))
+    mean = fixed_frame(models.each, A).mean(axis=0)
+    values, vectors = cast("tuple[Complex, Complex]", np.linalg.eig(mean.astype(np.complex128)))
     keep = np.flatnonzero(values.imag > MIN_OSCILLATION)
     keep = keep[np.argsort(np.abs(values[keep]), kind="stable")]
-    return Shapes(values[keep], vectors[:, keep].T @ fields.of_states(models.deck, models.at, models.each))
+    shapes: Complex = vectors[:, keep].T @ fields.of_states(models.deck, models.at, models.each).astype(np.complex128)
+    return Shapes(values[keep], shapes)
 
 
 def _single(models: Models, restricted: Field | None) -> Shapes:

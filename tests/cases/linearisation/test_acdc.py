@@ -8,6 +8,7 @@ equation 29 at each azimuth without angular acceleration; the mean; eigenvalues 
 import os
 import re
 from pathlib import Path
+from typing import cast
 
 import numpy as np
 import pytest
@@ -65,12 +66,14 @@ def eigenvalues(each: AzimuthSet) -> NDArray[np.complex128]:
 
         T1, T1q = spread(np.eye(f2), t, n2), spread(np.eye(f1), t, n1)
         T2, T3, T2q = (spread(np.zeros((f, f)), small, n) for f, small, n in ((f2, t2, n2), (f2, t3, n2), (f1, t2, n1)))
-        L, R = block_diag(T1, T1, T1q), block_diag(omega * T2, 2 * omega * T2, omega * T2q)
+        L, R = (
+            cast("Array", block_diag(*parts)) for parts in ((T1, T1, T1q), (omega * T2, 2 * omega * T2, omega * T2q))
+        )
         n = len(x2)
         L[n : 2 * n, :n], R[n : 2 * n, :n] = omega * T2, omega**2 * T3
-        inverse = np.linalg.inv(block_diag(T1, T1, T1q))
+        inverse = np.linalg.inv(cast("Array", block_diag(T1, T1, T1q)))
         total += inverse @ (A[np.ix_(order, order)] @ L - R)
-    return np.linalg.eigvals(total / len(each.A))
+    return cast("NDArray[np.complex128]", np.linalg.eigvals((total / len(each.A)).astype(np.complex128)))
 
 
 @pytest.mark.parametrize(
@@ -86,7 +89,7 @@ def test_frequencies_and_damping_are_acdcs(pattern: str) -> None:
     (each,) = collect([read(path) for path in sorted(Path(FOLDER or "").glob(pattern))])
     values = eigenvalues(each)
     values = values[values.imag > 1e-6 * max(1.0, np.abs(values).max())]
-    own = np.array([mode.eigenvalue for mode in spectrum(each, each.A).modes])
+    own = np.array([mode.eigenvalue for mode in spectrum(each, each.A).modes], dtype=np.complex128)
     own = own[own.imag > 1e-6 * max(1.0, np.abs(own).max())]
     assert len(own) == len(values)
     distance = np.abs(own[:, None] - values[None, :]).min(axis=1) / np.abs(own)
