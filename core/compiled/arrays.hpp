@@ -5,6 +5,7 @@
 #include <pybind11/pybind11.h>
 
 #include <cstdint>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -19,6 +20,9 @@ using Indices = py::array_t<std::int64_t, py::array::c_style>;
 
 template <class T>
 constexpr py::ssize_t numbers = sizeof(T) / sizeof(double);
+
+// Other threads run Python while this lives: only the memory of arrays may be touched, none may be made or dropped.
+using WithoutLock = py::gil_scoped_release;
 
 inline void check(const py::array& a, py::ssize_t expected) {
     if (!py::isinstance<Doubles>(a)) throw py::type_error("an array must be C-contiguous and of type float64");
@@ -67,6 +71,8 @@ Shape dimensions() {
     return dimensions(static_cast<const T*>(nullptr));
 }
 
+constexpr py::ssize_t MANY = 64;  // items that take longer than to give the lock away and to take it back
+
 // A function of one item for arrays (..., item): the results (..., result).
 template <class Out, class In>
 auto each(Out (*f)(const In&)) {
@@ -75,6 +81,8 @@ auto each(Out (*f)(const In&)) {
         const py::ssize_t n = out.size() / numbers<Out>;
         const In* from = items<In>(given, n);
         Out* to = fill<Out>(out);
+        std::optional<WithoutLock> unlocked;
+        if (n >= MANY) unlocked.emplace();
         for (py::ssize_t k = 0; k < n; ++k) to[k] = f(from[k]);
         return out;
     };

@@ -108,9 +108,12 @@ inline py::tuple relative_pencil(const BeamArrays& of, const py::array& x, const
     const auto* turns = items<Matrix<3, 3>>(axes, n);
     check(beta, beams.inner ? 6 * n : 0);
     RelativePencil out(n, of.size());
-    for (int k = 0; k < n; ++k)
-        out.set(k, element_pencil(beams, k, pose[k], coordinates(beta, k), {frames[k], falls[k], turns[k]}, geometric,
-                                  of.loaded));
+    {
+        const WithoutLock unlocked;
+        for (int k = 0; k < n; ++k)
+            out.set(k, element_pencil(beams, k, pose[k], coordinates(beta, k), {frames[k], falls[k], turns[k]},
+                                      geometric, of.loaded));
+    }
     return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring);
 }
 

@@ -40,7 +40,9 @@ struct LanczosOperator {
     void keep_massive(py::array& y) const {
         sized(K, [&](auto D) {
             const auto a = sized_as<D>();
-            southwell::keep_massive(a, writable_rows(y, a.size()));
+            const Rows rows = writable_rows(y, a.size());
+            const WithoutLock unlocked;
+            southwell::keep_massive(a, rows);
             return 0;
         });
     }
@@ -52,6 +54,7 @@ struct LanczosOperator {
             const int n = a.size();
             const Rows from = rows_of(v, 2 * n);
             Doubles w({from.count, 2 * n});
+            const WithoutLock unlocked;
             Block force(from.count, 2 * n), My(from.count, n);
             southwell::forward(a, from, Rows{w.mutable_data(), 2 * n, from.count}, force, My);
             return w;
@@ -68,7 +71,10 @@ struct LanczosOperator {
                 grown.projected.count < std::min(look + rows.count, grown.vectors.count))
                 throw std::invalid_argument("a block has at most eight vectors, and the basis and its projection room");
             bool exhausted = false;
-            const Gram gram = southwell::extend(a, rows, grown, look, exhausted);
+            const Gram gram = [&] {
+                const WithoutLock unlocked;
+                return southwell::extend(a, rows, grown, look, exhausted);
+            }();
             Doubles out({gram.count, gram.count});
             for (int i = 0; i < gram.count; ++i)
                 for (int j = 0; j < gram.count; ++j) out.mutable_at(i, j) = gram.item[i][j];

@@ -77,15 +77,18 @@ inline py::tuple tree_parts(const BeamArrays& of, const py::array& nodes, const 
     check(beta, beams.inner ? 6 * n : 0);
     RelativePencil out(n, of.size());
     Doubles g({n + 1, 6}), C({n + 1, 6, 6}), K({n + 1, 6, 6});
-    std::vector<Surroundings> around(n + 1);
-    for (int k = 0; k <= n; ++k) {
-        around[k] = surroundings(pose[k], omega, *g0);
-        const Inertial node = node_pencil(lump[k], push[k], around[k], geometric);
-        fill<Vector6>(g)[k] = node.g, fill<Matrix6>(C)[k] = node.C, fill<Matrix6>(K)[k] = node.K;
+    {
+        const WithoutLock unlocked;
+        std::vector<Surroundings> around(n + 1);
+        for (int k = 0; k <= n; ++k) {
+            around[k] = surroundings(pose[k], omega, *g0);
+            const Inertial node = node_pencil(lump[k], push[k], around[k], geometric);
+            fill<Vector6>(g)[k] = node.g, fill<Matrix6>(C)[k] = node.C, fill<Matrix6>(K)[k] = node.K;
+        }
+        for (int k = 0; k < n; ++k)
+            out.set(k, element_pencil(beams, k, between[k] * end[k], coordinates(beta, k), around[parent.at(k)],
+                                      geometric, of.loaded));
     }
-    for (int k = 0; k < n; ++k)
-        out.set(k, element_pencil(beams, k, between[k] * end[k], coordinates(beta, k), around[parent.at(k)], geometric,
-                                  of.loaded));
     return py::make_tuple(out.residual, out.M, out.C, out.remainder, out.spring, g, C, K);
 }
 
@@ -109,6 +112,7 @@ inline void tree_sum(const LinkArrays& of, py::array& M, py::array& C, py::array
         auto* stiffness = writable<Matrix<D, D>>(K, n);
         const Matrix6* on_nodes[3] = {items<Matrix6>(lumps, n + 1), items<Matrix6>(of_C, n + 1),
                                       items<Matrix6>(of_K, n + 1)};
+        const WithoutLock unlocked;
         for (int k = 0; k < n; ++k) add(springs[k], 6, 6, stiffness[k]);
         for (auto [matrix, node] :
              {std::pair{mass, on_nodes[0]}, {gyroscopic, on_nodes[1]}, {stiffness, on_nodes[2]}}) {
@@ -149,7 +153,9 @@ inline Doubles product(const py::array& matrix, double sign, const LinkArrays& l
         const auto m = elements_of<D>(matrix, matrix.shape(0));
         const Rows from = rows_of(x, m.n * (D - 6));
         Doubles out({from.count, m.n * (D - 6)});
-        times(m, sign, links_of(links, m.n), from, {out.mutable_data(), from.stride, from.count});
+        const Rows to{out.mutable_data(), from.stride, from.count};
+        const WithoutLock unlocked;
+        times(m, sign, links_of(links, m.n), from, to);
         return out;
     });
 }
@@ -159,6 +165,7 @@ inline void twists(const LinkArrays& links, py::array& x) {
     if (x.ndim() != 3) throw std::invalid_argument("vectors must be (k, n, d)");
     const auto n = x.shape(1), d = x.shape(2);
     double* data = writable<double>(x, x.size());
+    const WithoutLock unlocked;
     to_twists(links_of(links, n), static_cast<int>(d), {data, static_cast<long>(n * d), static_cast<int>(x.shape(0))});
 }
 
@@ -168,8 +175,12 @@ inline py::tuple factor(const py::array& K, const LinkArrays& links) {
         constexpr int d = D - 6;
         const auto m = elements_of<D>(K, K.shape(0));
         Doubles flexibility({m.n, d, d}), transfer({m.n, 6, d}), reaction({m.n, d, 6});
-        const Factors<D> out{fill<Matrix<d, d>>(flexibility), fill<Matrix<6, d>>(transfer), fill<Matrix<d, 6>>(reaction)};
-        const int kind = eliminate(m, links_of(links, m.n), out);
+        const Factors<D> out{fill<Matrix<d, d>>(flexibility), fill<Matrix<6, d>>(transfer),
+                             fill<Matrix<d, 6>>(reaction)};
+        const int kind = [&] {
+            const WithoutLock unlocked;
+            return eliminate(m, links_of(links, m.n), out);
+        }();
         return py::make_tuple(kind, flexibility, transfer, reaction);
     });
 }
@@ -189,16 +200,21 @@ inline void solve_in_place(const py::array& flexibility, const py::array& transf
     const Links& links = links_of(of, flexibility.shape(0));
     const int n = links.n, d = static_cast<int>(flexibility.shape(1));
     const Rows rows = writable_rows(x, n * d);
+    const auto solve_all = [&](const auto& factors) {
+        const WithoutLock unlocked;
+        solve(factors, links, rows);
+    };
     if (d == 12)
-        solve(factors_of<18>(flexibility, transfer, reaction, n), links, rows);
+        solve_all(factors_of<18>(flexibility, transfer, reaction, n));
     else
-        solve(factors_of<12>(flexibility, transfer, reaction, n), links, rows);
+        solve_all(factors_of<12>(flexibility, transfer, reaction, n));
 }
 
 inline int negative(const py::array& K, const py::array& C, const py::array& M, const LinkArrays& links, double omega) {
     return sized(K, [&](auto D) {
-        const auto m = elements_of<D>(K, K.shape(0));
-        return negative_pivots(m, elements_of<D>(C, m.n), elements_of<D>(M, m.n), links_of(links, m.n), omega);
+        const auto m = elements_of<D>(K, K.shape(0)), c = elements_of<D>(C, m.n), mass = elements_of<D>(M, m.n);
+        const WithoutLock unlocked;
+        return negative_pivots(m, c, mass, links_of(links, m.n), omega);
     });
 }
 
