@@ -12,8 +12,8 @@ struct LanczosOperator {
     LinkArrays links;
     Doubles flexibility, transfer, reaction, massive, lever;
 
-    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, const LinkArrays& links_, Doubles flexibility_, Doubles transfer_,
-                    Doubles reaction_, Doubles massive_, Doubles lever_)
+    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, const LinkArrays& links_, Doubles flexibility_,
+                    Doubles transfer_, Doubles reaction_, Doubles massive_, Doubles lever_)
         : M(M_),
           C(C_),
           K(K_),
@@ -66,9 +66,10 @@ struct LanczosOperator {
         return sized(K, [&](auto D) {
             const auto a = sized_as<D>();
             Rows rows = writable_rows(w, 2 * a.size());
-            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size, last_step};
-            if (rows.count < 1 || rows.count > WIDTH || last_step < 0 || size < last_step || size > grown.vectors.count ||
-                grown.projected.count < std::min(look + rows.count, grown.vectors.count))
+            Basis grown{writable_rows(basis, 2 * a.size()), writable_rows(projected, projected.shape(0)), size,
+                        last_step};
+            if (rows.count < 1 || rows.count > WIDTH || last_step < 0 || size < last_step ||
+                size > grown.vectors.count || grown.projected.count < std::min(look + rows.count, grown.vectors.count))
                 throw std::invalid_argument("a block has at most eight vectors, and the basis and its projection room");
             bool exhausted = false;
             const Gram gram = [&] {

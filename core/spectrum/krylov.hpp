@@ -173,8 +173,8 @@ inline void eigh(Gram& gram, double (&value)[WIDTH], double (&vectors)[WIDTH][WI
 
 // A growing basis, and the operator on it.
 struct Basis {
-    Rows vectors;      // ``limit`` rows
-    Rows projected;    // (m, m), with room for the vectors to come
+    Rows vectors;         // ``limit`` rows
+    Rows projected;       // (m, m), with room for the vectors to come
     int size, last_step;  // rows that are filled, and where those of the last step begin
 };
 
