@@ -141,7 +141,7 @@ def _solved(subject: BladeSubject, elements: tuple[int, ...]) -> _Known:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", AccuracyWarning)  # its uncertainty is taken into account
         refined = solve.modes(blade, omega, count=count, accuracy=ACCURACY, allow_large_strain=True)
-    ((factor, unsure),) = core_solver.rigid_strain_bias(blade, [(omega, elements[-2:])], count)
+    ((factor, unsure),) = core_solver.rigid_strain_bias(blade, [(omega, (elements[-2], elements[-1]))], count)
     answers = tuple(of_blade(modes) for modes in meshes)
     finest = of_blade(meshes[-1], weights(blade))
     return _Known(elements, answers, Compared(finest, tuple(range(count))), factor, unsure, refined)

@@ -106,7 +106,7 @@ def _congruent(matrices: Array, to: Array) -> Array:
 
 
 def _section_axes(blade: Blade, _: int) -> tuple[Blade, Blade]:
-    rigid = np.isinf(np.diagonal(blade.stiffness, axis1=1, axis2=2)).any(axis=0)
+    rigid = _rigid(blade)
     if rigid[1] != rigid[2] or rigid[BEND_Y] != rigid[BEND_Z]:
         blade = flexible(blade)
     to = _turned(-ANGLE)
@@ -120,10 +120,14 @@ def _section_axes(blade: Blade, _: int) -> tuple[Blade, Blade]:
     return blade, turned
 
 
+def _rigid(blade: Blade) -> NDArray[np.bool_]:
+    """(6,) whether a strain is rigid."""
+    return np.array([np.isinf(blade.stiffness[:, k, k]).any() for k in range(6)])
+
+
 def flexible(blade: Blade) -> Blade:
     """The blade with rigid strains replaced by stiff ones; the same stiffness in each description that is compared."""
-    d = np.diagonal(blade.stiffness, axis1=1, axis2=2)
-    rigid = np.isinf(d).any(axis=0)
+    d, rigid = np.diagonal(blade.stiffness, axis1=1, axis2=2), _rigid(blade)
     if not rigid.any():
         return blade
     if rigid[[BEND_Y, BEND_Z]].any():
