@@ -11,6 +11,7 @@ from typing import Any
 from unittest.mock import patch
 
 import matplotlib.pyplot as plt
+from matplotlib.axes import Axes
 
 from ..campbell import interactive
 from ..shared import style
@@ -54,15 +55,16 @@ def page(path: Path) -> dict[str, str]:
 
 def _shown(source: str, names: dict[str, Any]) -> Iterator[str]:
     """Run a cell; what it prints, and the HTML or text of its last expression unless a semicolon ends it."""
-    body = ast.parse(source).body
-    last = body.pop() if body and isinstance(body[-1], ast.Expr) and not source.rstrip().endswith(";") else None
+    body, shown = ast.parse(source).body, None
+    if body and isinstance(last := body[-1], ast.Expr) and not source.rstrip().endswith(";"):
+        body, shown = body[:-1], last.value
     printed = StringIO()
     with redirect_stdout(printed):
         exec(compile(ast.Module(body, []), "<cell>", "exec"), names)
-        value = None if last is None else eval(compile(ast.Expression(last.value), "<cell>", "eval"), names)
+        value = None if shown is None else eval(compile(ast.Expression(shown), "<cell>", "eval"), names)
     if printed.getvalue():
         yield f"```text\n{printed.getvalue()}```"
-    if value is not None and not isinstance(value, plt.Axes):
+    if value is not None and not isinstance(value, Axes):
         html = getattr(value, "_repr_html_", None)
         yield f'<div class="output">{STYLE.sub("", html())}</div>' if html else f"```text\n{value!r}\n```"
 
