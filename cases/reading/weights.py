@@ -175,23 +175,23 @@ def _differences(blade: Blade, stations: Stations, model: Fingerprint, rotary: b
     return of_model, expected, (of_model - expected) / scale
 
 
-ELEMENTS = 16
-"""Number of elements of core's own model, which any number integrates exactly between stations."""
+MESHES = (16, 64, 256)
+"""Numbers of elements of core's own models: thin tips, whose flexibility is that of the last metres, need many."""
 
 
-def of_core(blade: Blade) -> Fingerprint:
-    """The fingerprint of the model that core assembles."""
-    mesh = discretize(blade, ELEMENTS)
+def of_core(blade: Blade, elements: int = MESHES[0]) -> Fingerprint:
+    """The fingerprint of the model that core assembles with a number of elements."""
+    mesh = discretize(blade, elements)
     points = mesh.beams.points
     at = mesh.nodes[mesh.parent[points.element]] @ sp.exp(points.zeta0)
     bodies = transformed(points.mass, at).sum(axis=0) + transformed(mesh.lumps, mesh.nodes).sum(axis=0)
-    weighed = of_matrix(bodies, ELEMENTS)
+    weighed = of_matrix(bodies, elements)
     if not clamped(blade):
         return weighed
-    elements = integrate(blade, divide(blade, ELEMENTS))
-    to_hub = sp.adjoint(elements.nodes[:-1])
+    statics = integrate(blade, divide(blade, elements))
+    to_hub = sp.adjoint(statics.nodes[:-1])
     at_tip = np.eye(6)
-    at_tip[:3, 3:] = -sp.skew(elements.nodes[-1, :3, 3])
+    at_tip[:3, 3:] = -sp.skew(statics.nodes[-1, :3, 3])
     lever = at_tip @ to_hub
-    flexibility = (lever @ elements.flexibility @ np.swapaxes(lever, 1, 2)).sum(axis=0)
+    flexibility = (lever @ statics.flexibility @ np.swapaxes(lever, 1, 2)).sum(axis=0)
     return replace(weighed, flexibility=tip_flexibility(flexibility))

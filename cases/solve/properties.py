@@ -61,8 +61,12 @@ def of_reading(case: str, file: BladeFile | None, blade: Blade) -> tuple[list[Pr
 
 def of_core(case: str, blade: Blade, stations: Stations, version: str) -> list[PropertyCheck]:
     """The rows of the model that core assembles."""
-    weights = weighing.weights(blade, stations, [weighing.of_core(blade)])
-    return _rows(case, CORE, version, weights)
+    models: list[Fingerprint] = []
+    for elements in weighing.MESHES:
+        models = [*models[-1:], weighing.of_core(blade, elements)]
+        if weighing.enough(blade, stations, models, rotary=True):
+            break
+    return _rows(case, CORE, version, weighing.weights(blade, stations, models))
 
 
 @dataclass(frozen=True)

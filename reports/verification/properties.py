@@ -21,7 +21,7 @@ def contradictions(run: Run) -> list[str]:
         )
     models = _codes(c for c in run.property_checks if c.quantity == "fingerprint" and c.verdict == "fail")
     if models:
-        out.append(f"the model of {', '.join(models)} differs from the stations of the blade")
+        out.append(f"the model of {', '.join(map(_solver, models))} differs from the stations of the blade")
     changed = [c for c in run.property_checks if c.quantity == "invariance" and c.verdict == "fail"]
     if changed:
         n = len(changed)
@@ -62,9 +62,13 @@ def _unchanged(run: Run) -> list[str]:
 
 def subject(check: PropertyCheck) -> str:
     """What is checked, in words: ``Second reading``, ``Model of pinocchio``, ``Invariance``."""
-    return {"reading": "Second reading", "fingerprint": f"Model of {check.code}", "invariance": "Invariance"}[
+    return {"reading": "Second reading", "fingerprint": f"Model of {_solver(check.code)}", "invariance": "Invariance"}[
         check.quantity
     ]
+
+
+def _solver(code: str) -> str:
+    return "Southwell's own solver" if code == "core" else code
 
 
 def readings(run: Run, case: str) -> list[dict[str, str]]:

@@ -139,10 +139,10 @@ def test_a_wrong_sampling_of_core_is_named_for_core_alone(tmp_path: Path, monkey
     monkeypatch.setattr(core_sampling, "_interpolate", heavier)
     monkeypatch.setattr(tasks, "fingerprints", in_this_process)
     found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
-    assert evidence.verdict(found) == "No: the model of core differs from the stations of the blade."
+    assert evidence.verdict(found) == "No: the model of Southwell's own solver differs from the stations of the blade."
     first = properties.lines(found)[0]
     assert first.startswith(
-        "Model of core: mass: 1212 kg in the code's model, 1200 kg by quadrature of the stations: +1 %"
+        "Model of Southwell's own solver: mass: 1212 kg in the code's model, 1200 kg by quadrature of the stations: +1 %"
     )
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.reading import weights as wt
+from southwell.cases.solve import properties
 from southwell.core import sampling as core_sampling
 from southwell.core import solve
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
@@ -216,6 +217,16 @@ def test_one_per_cent_of_stiffness_is_found_by_name(
     assert {"tip flexibility along z", "tip flexibility about y"} <= set(wrong)
     assert not {"tip flexibility along y", "tip flexibility about z", "tip flexibility about x"} & set(wrong)
     assert wrong["tip flexibility along z"] == pytest.approx(1 / 0.99 - 1, rel=1e-2)
+
+
+def test_a_soft_tip_takes_a_finer_model() -> None:
+    """The stiffness falls to a twentieth in the last metre, which 16 elements do not resolve."""
+    stiffness = section_stiffness(*(c * np.array([20.0, 20.0, 20.0, 1.0]) for c in (1e8, 1e6, 1e6, 4e6)))
+    s = np.array([0.0, 4.0, 19.0, 20.0])
+    blade = tapered(stations=s, stiffness=stiffness, curve=s[:, None] * [1.0, 0.0, 0.0])
+    coarse = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
+    assert max(abs(w.difference) for w in coarse) > 5e-3
+    assert {row.verdict for row in properties.of_core("soft", blade, wt.stations_of(blade), "0")} == {"pass"}
 
 
 def test_a_coupling_of_the_tip_is_compared() -> None:
