@@ -124,6 +124,12 @@ def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
             f"not used: BModes' own mesh (nselt = {named['nselt'][1]}); here the mesh is refined to the accuracy, and "
             "frequencies that BModes prints with few elements differ by up to several per cent"
         )
+    arm = value(main, named, "cm_loc"), value(main, named, "cm_axial")
+    if any(arm) and any(value(main, named, n) for n in ("ixx_tip", "iyy_tip", "izz_tip")):
+        out.append(
+            "moments of the tip mass are about the tip section's axes, as the file's comments say; BModes 3 itself takes them "
+            "about the mass centre"
+        )
     if p["sc_offst"].any():
         out.append("the line of shear centres is treated as the straight reference axis")
     return tuple(out)

@@ -166,6 +166,7 @@ def test_bmodes_numbers_are_where_they_belong() -> None:
     assert blade.tip_mass[3:, :3][2, 0] == pytest.approx(-5 * -0.1)  # the first moments of (0.2, −0.1, 0)
     assert blade.tip_mass[3:, :3][1, 2] == pytest.approx(-5 * 0.2)
     assert any("sec_mass_mult = 2, edge_stff_mult = 1.5" in note for note in found.source.notes)
+    assert any("BModes 3 itself takes them about the mass centre" in note for note in found.source.notes)
 
 
 def test_bmodes_products_of_inertia_of_the_tip(tmp_path: Path) -> None:
