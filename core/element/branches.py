@@ -97,8 +97,7 @@ def springs(stiffness: Array) -> tuple[Array, Array]:
     root = np.linalg.cholesky(np.linalg.inv(stiffness[np.ix_(finite, finite)]))
     screws = np.zeros((len(finite), 6))
     screws[:, finite] = (root / np.diagonal(root)).T
-    constants: Array = 1.0 / np.diagonal(root) ** 2
-    return screws, constants
+    return screws, np.square(1.0 / np.diagonal(root))
 
 
 def around_hub(blade: Mesh, count: int) -> Mesh:

@@ -114,8 +114,8 @@ def _blades(turbine: Turbine, path: Path, hub: Array, M: Array, K: Array) -> tup
 
 def _derivatives(shapes: Sequence[Array], h: Array, length: float, order: int) -> Array:
     """(shapes, points) derivatives along the beam."""
-    out: Array = np.array([polynomial.polyval(h, polynomial.polyder(c, order)) for c in shapes]) / length**order
-    return out
+    values = np.array([polynomial.polyval(h, polynomial.polyder(c, order)) for c in shapes], float)
+    return np.divide(values, length**order)
 
 
 def _twice(curvature: Array, length: float, h: Array) -> Array:
