@@ -78,9 +78,9 @@ def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Descripti
 
 
 def chosen(names: Iterable[str]) -> tuple[str, ...]:
-    """All of ``NAMES`` if ``names`` has one that every run seeds; else those that are in both."""
+    """All of ``NAMES`` if ``names`` has all that every run seeds; else those that are in both."""
     names = tuple(names)
-    return NAMES if set(names) & set(FAST) else tuple(name for name in names if name in NAMES)
+    return NAMES if set(FAST) <= set(names) else tuple(name for name in names if name in NAMES)
 
 
 def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse: bool = False) -> list[Control]:

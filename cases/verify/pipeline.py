@@ -212,8 +212,8 @@ def _solved(
             trials.submit(own.run, subject, own.witnesses(run.cells, subject, plan.codes), on_blades, users is not None)
             for subject in (users_blades if on_blades else [])
         ]
-        for others in (own_reading.run, own_uncertainty.run):
-            on_own += [trials.submit(others, subject) for subject in (users_blades if on_blades else [])]
+        for others in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
+            on_own += [trials.submit(others, subject) for subject in users_blades]
         controls = {control.control: control for future in tried for control in future.result()}
     about = plan.about
     ordered = (*(c for future in on_own for c in future.result()), *(controls[name] for name in elsewhere))
