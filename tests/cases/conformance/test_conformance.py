@@ -19,9 +19,12 @@ from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, DIGITS, BladeAdapter, CodeError, Independence
 from southwell.tests.support.codes import BLADE_CODES
 
+LONG = ("pinocchio", "scikit-fem-reissner", "scikit-fem-solid")
+"""Codes whose checks take half a minute; every push has them in the matrix."""
+
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", BLADE_CODES)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.nightly) if n in LONG else n for n in BLADE_CODES])
 def test_ours_conform(name: str) -> None:
     """Passes, or declines with a reason; one that declined everything would be caught by the capabilities' table."""
     code = registry.code(name)

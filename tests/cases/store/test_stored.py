@@ -154,7 +154,7 @@ def test_verify_takes_the_second_time_what_it_computed_the_first(tmp_path: Path)
 
     assert "from the store" not in run("first")
     # the weights of two models are asked again: the store of the processes of codes has them
-    assert "8 of 10 answers are from the store, computed between 20" in run("second")
+    assert "10 of 12 answers are from the store, computed between 20" in run("second")
     assert "from the store" not in run("third", "--fresh")
     assert (tmp_path / "first" / "results.jsonl").read_text() == (tmp_path / "second" / "results.jsonl").read_text()
 

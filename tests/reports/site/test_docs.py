@@ -169,6 +169,7 @@ def typed(command: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
+@pytest.mark.nightly
 def test_the_notebook_is_a_page_with_what_its_cells_show() -> None:
     path = DOCS / "first-blade.ipynb"
     cells = json.loads(path.read_text(encoding="utf-8"))["cells"]
