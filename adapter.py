@@ -12,7 +12,7 @@ from .core.blade import Blade, clamped, coupled, straight, uniform
 from .core.effects import Effects
 from .core.mechanism.description import Mechanism
 from .core.modes import STATIONS, Modes
-from .core.rotor.turbine import Turbine
+from .core.turbine.turbine import Turbine
 from .references.protocol.fingerprint import Fingerprint
 from .references.protocol.interface import (
     CORE,

@@ -8,7 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from numpy.typing import NDArray
 
-from . import curve, gauss
+from . import curve
+from .space import gauss
 from .space.inertia import about_centre
 
 if TYPE_CHECKING:

@@ -19,11 +19,12 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from . import curve, gauss
+from . import curve
 from .blade import Blade
 from .element.sections import frames, root
 from .modes import STATIONS, Modes
 from .sampling import mass_at
+from .space import gauss
 from .space.inertia import about_centre
 
 Array = NDArray[np.float64]

@@ -20,7 +20,7 @@ import numpy as np
 
 from ...core.blade import Blade
 from ...core.mechanism.description import Mechanism
-from ...core.rotor.turbine import Turbine
+from ...core.turbine.turbine import Turbine
 from ...references.protocol import registry
 from ...references.protocol.description import Description, describe
 from ..input import library

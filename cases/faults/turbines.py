@@ -7,10 +7,10 @@ from typing import Any
 import numpy as np
 
 from ...core.modes import STATIONS
-from ...core.rotor import turbine as assembly
-from ...core.rotor.turbine import Turbine, shaft_pose
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
+from ...core.turbine import turbine as assembly
+from ...core.turbine.turbine import Turbine, shaft_pose
 from ...references.protocol.process import Failure
 from ...references.protocol.turbines import TurbineModes
 from ..solve import turbine as solving

@@ -17,10 +17,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core import gauss
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade
 from ...core.element.sections import frames, root
 from ...core.sampling import mass_at
+from ...core.space import gauss
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
 

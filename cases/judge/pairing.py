@@ -14,10 +14,10 @@ from numpy.typing import NDArray
 from scipy.linalg import eigh
 from scipy.optimize import linear_sum_assignment
 
-from ...core import gauss
 from ...core.blade import Blade
 from ...core.modes import STATIONS, Modes
 from ...core.sampling import mass_at, twist_at
+from ...core.space import gauss
 from .spectrum import Spectrum, on_common
 
 Array = NDArray[np.float64]

@@ -12,7 +12,7 @@ from scipy.integrate import trapezoid
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
-from ...core.rotor.turbine import Turbine
+from ...core.turbine.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
 from ..input import readers

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...core.effects import ALL_EFFECTS
 from ...core.rotor.periodic import PeriodicError
-from ...core.rotor.stations import COLUMNS, weights
-from ...core.rotor.turbine import FINER, Machine, Resolution, Turbine, machine
-from ...core.rotor.turbine_modes import TurbineModes, turbine_modes
+from ...core.turbine.stations import COLUMNS, weights
+from ...core.turbine.turbine import FINER, Machine, Resolution, Turbine, machine
+from ...core.turbine.turbine_modes import TurbineModes, turbine_modes
 from ...references.protocol import turbines
 from ...references.protocol.process import Failure, Limits
 from ...references.protocol.worker import Run, turbine_answers

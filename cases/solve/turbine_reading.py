@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z
-from ...core.rotor.turbine import Turbine
+from ...core.turbine.turbine import Turbine
 from ...references.readers import NotReadError, openfast_turbine
 from ..judge.results import PropertyCheck
 from ..reading.comparison import TARGET

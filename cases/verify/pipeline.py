@@ -16,7 +16,7 @@ from ...references.protocol.store import Store
 from ..faults import own, own_reading, own_uncertainty, table
 from ..input.writing import writable
 from ..judge.results import Control, Planned, Run, Setting
-from ..plan import linearised, measurements, names, user_results
+from ..plan import linearised, names, user_results
 from ..plan.blade import BladeSubject
 from ..plan.request import Execution, Request, command_line
 from ..plan.settings import NOT_USED
@@ -30,7 +30,7 @@ from ..store import results_file, unfinished
 from ..store.results_file import RESULTS
 from ..store.stored import Stored
 from ..store.unfinished import Unfinished
-from . import matrix
+from . import matrix, measurements
 from .matrix import Progress
 
 SCRATCH = "results.partial.tmp"

@@ -20,9 +20,10 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import curve, gauss
+from .. import curve
 from ..blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, straight
 from ..sampling import stiffness_at, twist_at
+from ..space import gauss
 from ..space import spatial as sp
 
 Array = NDArray[np.float64]

@@ -12,15 +12,16 @@ from numpy.typing import NDArray
 
 from ...core.blade import BEND_Y, BEND_Z, Blade
 from ...core.effects import ALL_EFFECTS
-from ...core.rotor.turbine import Turbine
+from ...core.turbine.turbine import Turbine
 from ..matrices import rotating
 from ..matrices.quadratic import gyroscopic_modes
-from ..protocol.interface import REFERENCE_LINE, Independence
+from ..protocol.interface import Independence
 from ..protocol.turbines import TurbineAdapter, TurbineModes
-from ..theories import turbine_tree
+from ..theories import turbine_motion, turbine_tree
 from ..theories.reference_line import line
-from ..theories.turbine_tree import NOTHING, Body, Chain, TurbineTree
+from ..theories.turbine_tree import NOTHING, PLACING, Body, Chain, TurbineTree
 from . import system as ex
+from . import tower_weight
 from .hinged_segments import SEGMENTS, HingedSegments, hinge_segments, root_segment
 from .tree import JOINT, linearize
 
@@ -36,7 +37,7 @@ class ExudynTurbine(TurbineAdapter):
         "Exudyn",
         SEGMENTS,
         "Exudyn",
-        sections=REFERENCE_LINE,
+        sections=PLACING,
         eigensolver="the adapters' own, in Fourier coordinates of the blades",
     )
     effects = ALL_EFFECTS
@@ -66,19 +67,19 @@ class ExudynTurbine(TurbineAdapter):
         tree = turbine_tree.build(turbine, chain(turbine.tower, tower), chain(turbine.blade, segments))
         M, C, K, at_blade = linearize(segments, omega)
         q = np.zeros(len(tree.strain))
-        q[tree.tower], weight = turbine_tree.standing(tree)
+        q[tree.tower], weight = tower_weight.standing(tree)
         q[tree.blades] = at_blade
 
         def at(psi: float) -> tuple[Array, Array, Array]:
             M, C, K = _linearized(tree, q, omega, psi)
             K[np.ix_(tree.tower, tree.tower)] += weight
-            return turbine_tree.with_generator(tree, q, M, C, K)
+            return turbine_motion.with_generator(tree, q, M, C, K)
 
         groups = [[int(k) - 1 for k in joint] for joint in tree.blades.T]  # without the azimuth
         lowest = float(gyroscopic_modes(M, C, K, 1)[0][0])
         values, x = rotating.lowest(at, omega, groups, count, lowest, turbine.drivetrain.free)
         full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
-        return TurbineModes(values, turbine_tree.shapes(tree, q, full), elements)
+        return TurbineModes(values, turbine_motion.shapes(tree, q, full), elements)
 
 
 def chain(blade: Blade, segments: HingedSegments) -> Chain:

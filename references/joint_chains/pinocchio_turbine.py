@@ -9,6 +9,7 @@ each blade. Inertia forces are sums over bodies, so these add up to the machine 
 arrays of n³ numbers, is that of one blade. Fourier coordinates of the blades remove the azimuth (``matrices.rotating``).
 """
 
+from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -16,21 +17,21 @@ from numpy.typing import NDArray
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS
-from ...core.rotor.turbine import Turbine
 from ...core.space.spatial import skew
+from ...core.turbine.turbine import Turbine
 from ..matrices import rotating
-from ..protocol.interface import REFERENCE_LINE, CodeError, Independence, extra
+from ..protocol.interface import CodeError, Independence, extra
 from ..protocol.turbines import TurbineAdapter, TurbineModes
 from ..sampling import points, stiffness_at
-from ..theories import turbine_tree
+from ..theories import turbine_motion, turbine_tree
 from ..theories.reference_line import frames, lumps
-from ..theories.turbine_tree import NOTHING, Body, Chain, TurbineTree
+from ..theories.turbine_tree import NOTHING, PLACING, Body, Chain, TurbineTree
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 STEPS = 60
-"""Largest number of Newton steps to the steady state of a blade."""
+"""Largest number of Newton steps to a steady state."""
 
 SOFT = 1e-14
 """Smallest compliance of a joint, relative to the largest of its kind, that has a coordinate."""
@@ -45,7 +46,7 @@ class PinocchioTurbine(TurbineAdapter):
         "Pinocchio",
         "lumped bodies on elements of integrated compliance",
         "Pinocchio, derivatives of recursive Newton-Euler",
-        sections=REFERENCE_LINE,
+        sections=PLACING,
         eigensolver="the adapters' own, in Fourier coordinates of the blades",
     )
     effects = ALL_EFFECTS
@@ -67,10 +68,10 @@ class PinocchioTurbine(TurbineAdapter):
         """
         tree = turbine_tree.build(turbine, chain(turbine.tower, elements), chain(turbine.blade, elements))
         base = np.arange(tree.hub + 1)
-        bare = _Plant(tree, base, tree.bodies)
-        single = _Plant(tree, np.append(base, tree.blades[0]), tree.bodies)
+        bare = _Links(tree, base, tree.bodies)
+        single = _Links(tree, np.append(base, tree.blades[0]), tree.bodies)
         q = np.zeros(len(tree.strain))
-        q[tree.tower], weight = turbine_tree.standing(tree)
+        q[tree.tower], weight = _standing(tree)
         q[tree.blades] = at_blade = _steady(tree, single, omega)
         own = np.ix_(base, base)
 
@@ -89,13 +90,13 @@ class PinocchioTurbine(TurbineAdapter):
             M, C, K = out
             K = K + tree.stiffness
             K[np.ix_(tree.tower, tree.tower)] += weight
-            return turbine_tree.with_generator(tree, q, M, C, K)
+            return turbine_motion.with_generator(tree, q, M, C, K)
 
         groups = [[int(k) - 1 for k in joint] for joint in tree.blades.T]  # without the azimuth
         scale = _frequency(tree, single, at_blade, omega)
         values, x = rotating.lowest(at, omega, groups, count, scale, turbine.drivetrain.free)
         full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
-        return TurbineModes(values, turbine_tree.shapes(tree, q, full), elements)
+        return TurbineModes(values, turbine_motion.shapes(tree, q, full), elements)
 
 
 def chain(blade: Blade, elements: int) -> Chain:
@@ -163,10 +164,10 @@ def _pinocchio() -> Any:
     return pinocchio
 
 
-class _Plant:
+class _Links:
     """Some links of a tree in Pinocchio, in ascending order, each after its parent."""
 
-    def __init__(self, tree: TurbineTree, links: Index, bodies: tuple[Body, ...]) -> None:
+    def __init__(self, tree: TurbineTree, links: Index, bodies: Sequence[Body], gravity: float = 0.0) -> None:
         pinocchio = self.pin = _pinocchio()
         self.spin = tree.spin
         kinds = (
@@ -178,7 +179,7 @@ class _Plant:
             pinocchio.JointModelRZ,
         )
         self.model: Any = pinocchio.Model()
-        self.model.gravity.setZero()
+        self.model.gravity.linear = np.array([-gravity, 0.0, 0.0])
         place = {-1: 0}
         for k in links.tolist():
             pose = pinocchio.SE3(tree.axes[k], tree.offset[k])
@@ -197,6 +198,11 @@ class _Plant:
         self.pin.computeRNEADerivatives(self.model, self.data, at, v, np.zeros_like(v))
         return self.data.tau.copy(), self.data.dtau_dq.copy(), self.data.dtau_dv.copy()
 
+    def weight(self, q: Array) -> tuple[Array, Array]:
+        """Gradient (n,) and Hessian (n, n) of the potential of the weight."""
+        gradient = self.pin.computeGeneralizedGravity(self.model, self.data, q).copy()
+        return gradient, self.pin.computeGeneralizedGravityDerivatives(self.model, self.data, q).copy()
+
     def linearized(self, q: Array, omega: float, psi: float) -> tuple[Array, Array, Array]:
         """M, C, K (n, n) of the inertia forces."""
         _, K, C = self.forces(q, omega, psi)
@@ -206,7 +212,29 @@ class _Plant:
         return M + np.triu(M, 1).T, C, K
 
 
-def _steady(tree: TurbineTree, single: _Plant, omega: float) -> Array:
+def _standing(tree: TurbineTree) -> tuple[Array, Array]:
+    """Coordinates (t,) of the tower under the weight of all that it carries, and the stiffness (t, t) of that weight.
+
+    The rotor is rigid.
+
+    Raises:
+        CodeError: Newton's method does not converge.
+    """
+    t, links = tree.tower, np.arange(tree.spin + 1)
+    loaded = _Links(tree, links, [*tree.bodies[: tree.spin], tree.rotor], tree.turbine.gravity)
+    elastic = tree.stiffness[np.ix_(t, t)]
+    q = np.zeros(len(links))
+    for _ in range(STEPS):
+        gradient, hessian = loaded.weight(q)
+        own = hessian[np.ix_(t, t)]
+        step = np.linalg.solve(elastic + own, -(elastic @ q[t] + gradient[t]))
+        q[t] += step
+        if np.abs(step).max() < 1e-13:
+            return q[t], loaded.weight(q)[1][np.ix_(t, t)]
+    raise CodeError("the tower finds no balance under the weight that it carries: check its stiffness")
+
+
+def _steady(tree: TurbineTree, single: _Links, omega: float) -> Array:
     """Coordinates (b,) of a blade in balance at a speed, rad/s, on a hub that only spins.
 
     Raises:
@@ -229,7 +257,7 @@ def _steady(tree: TurbineTree, single: _Plant, omega: float) -> Array:
     raise CodeError(f"omega: {omega:g} rad/s: the blade finds no steady state; lower the speed")
 
 
-def _frequency(tree: TurbineTree, single: _Plant, at_blade: Array, omega: float) -> float:
+def _frequency(tree: TurbineTree, single: _Links, at_blade: Array, omega: float) -> float:
     """A typical frequency, rad/s: that of a blade under a uniform load, by Rayleigh's quotient."""
     joints = tree.blades[0]
     first = single.model.nv - len(joints)

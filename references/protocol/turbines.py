@@ -15,7 +15,7 @@ from ...core.modes import STATIONS
 from .interface import Adapter, CodeError
 
 if TYPE_CHECKING:
-    from ...core.rotor.turbine import Turbine
+    from ...core.turbine.turbine import Turbine
 
 Complex = NDArray[np.complex128]
 
@@ -28,7 +28,7 @@ class TurbineModes:
         values: (m,) eigenvalues λ, 1/s, by modulus: one of each conjugate pair.
         shapes: (m, s, 4) complex, at any scale: displacement along x, y, z and rotation about x at azimuth 0, at the 21
             stations of the tower in the ground's axes and of each blade in the hub's axes turned to it; see
-            ``core.rotor.stations``.
+            ``core.turbine.stations``.
         elements: refinement: number of elements of a blade.
         seconds: wall time; nan: not measured, as of an answer from the store.
     """

@@ -26,7 +26,7 @@ from .process import raised
 from .turbines import TurbineModes
 
 if TYPE_CHECKING:
-    from ...core.rotor.turbine import Turbine
+    from ...core.turbine.turbine import Turbine
 
 Reply = dict[str, Any]
 
@@ -64,7 +64,7 @@ def encode_turbine(turbine: "Turbine") -> Any:
 
 def decode_turbine(data: Any) -> "Turbine":
     """Decode a turbine; the inverse of ``encode_turbine``."""
-    from ...core.rotor.turbine import Turbine
+    from ...core.turbine.turbine import Turbine
 
     return msgspec.convert(data, Turbine, dec_hook=lambda _, value: np.array(value, dtype=float))
 

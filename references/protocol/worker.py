@@ -43,7 +43,7 @@ from .wire import (
 )
 
 if TYPE_CHECKING:
-    from ...core.rotor.turbine import Turbine
+    from ...core.turbine.turbine import Turbine
 
 T = TypeVar("T")
 

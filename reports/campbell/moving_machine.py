@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from ...cases.campbell.machine import Line, MachineDiagram
 from ...cases.input import atomic
-from ...core.rotor.motion import Motion
+from ...core.turbine.motion import Motion
 from ..shared.certain import certain, relative
 from ..shared.style import COLOURS, MUTED
 from ..shared.units import Units

@@ -15,7 +15,7 @@ from southwell.references.protocol.interface import CORE, REFERENCE_LINE, BladeA
 from ..support.beams import PARK
 from ..support.codes import BLADE_CODES
 
-LANGUAGE = {"blade", "blade_checks", "curve", "effects", "gauss", "modes", "rank", "regular_files", "participation"}
+LANGUAGE = {"blade", "blade_checks", "curve", "effects", "modes", "rank", "regular_files", "participation"}
 """Modules of core that describe blades and modes, for every adapter. Others solve or discretise."""
 
 TOOLS = {"compiled", "space", "condense"}

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from southwell.core.blade import AXIAL, TORSION, Blade
-from southwell.core.rotor.stations import weights
-from southwell.core.rotor.turbine import Drivetrain, Turbine, machine
-from southwell.core.rotor.turbine_modes import TurbineModes, turbine_modes
+from southwell.core.turbine.stations import weights
+from southwell.core.turbine.turbine import Drivetrain, Turbine, machine
+from southwell.core.turbine.turbine_modes import TurbineModes, turbine_modes
 from southwell.references.exudyn.turbine import CODE as EXUDYN
 from southwell.references.joint_chains.pinocchio_turbine import CODE as PINOCCHIO
 from southwell.references.protocol.turbines import TurbineAdapter

@@ -17,9 +17,9 @@ from numpy.typing import NDArray
 from scipy.integrate import cumulative_trapezoid
 from scipy.linalg import eigh
 
-from southwell.core.rotor.turbine import Turbine
 from southwell.core.sampling import mass_at, stiffness_at, twist_at
 from southwell.core.space import spatial as sp
+from southwell.core.turbine.turbine import Turbine
 
 Array = NDArray[np.float64]
 

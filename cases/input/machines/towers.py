@@ -2,7 +2,7 @@
 
 from pathlib import Path
 
-from ....core.rotor.tower import Tower
+from ....core.turbine.tower import Tower
 from .. import files
 from ..errors import CaseError
 from ..readers import bmodes_tower, hawc2_htc, hawc2_tower, windio_tower

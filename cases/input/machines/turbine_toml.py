@@ -7,10 +7,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ....core.rotor.tower import Support, Tower, check
-from ....core.rotor.turbine import Drivetrain, Turbine, shaft_pose
 from ....core.space import spatial as sp
 from ....core.space.inertia import transformed
+from ....core.turbine.tower import Support, Tower, check
+from ....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from .. import readers, toml
 from ..errors import CaseError
 from ..readers.matrices import BEAMDYN, in_axes

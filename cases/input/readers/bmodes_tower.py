@@ -14,9 +14,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ....core.rotor.tower import Support, Tower, check
 from ....core.space import spatial as sp
 from ....core.space.inertia import transformed
+from ....core.turbine.tower import Support, Tower, check
 from ..errors import CaseError
 from . import bmodes
 from .bmodes import COLUMNS, FACTORS, Named

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ....core.blade import Blade, BladeError, coupled
-from ....core.rotor.tower import Tower
+from ....core.turbine.tower import Tower
 from ..errors import CaseError
 from . import hawc2, hawc2_htc
 from .hawc2_htc import LENGTHS

@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ....core.rotor.tower import Tower
+from ....core.turbine.tower import Tower
 from ..errors import CaseError
 from .source import Source
 from .text import load

@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.rotor.stations import COLUMNS, weights
+from ....core.turbine.stations import COLUMNS, weights
 from ...input.errors import CaseError
 from ...judge.cells import Head, Rows, empty, mode_fields
 from ...judge.pairing import pair

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.rotor.turbine import Turbine
+from ....core.turbine.turbine import Turbine
 from ...input import files
 from ...input.errors import CaseError
 from ...input.readers.openfast import elastodyn, elastodyn_tower, fst

@@ -2,7 +2,7 @@
 
 A node of blade k is at p = B (r e_x + Σ φ_i q_i − ½ qᵀ S q e_x) in the axes of its hub, which turn with Ω; B is precone, φ and
 S are those of ``nodes``. With a small twist ξ of the hub, its acceleration, and the forces m (a − g) on q and ξ, are linearised
-exactly. The tower is core's, restricted to the assumed shapes of the deck. Blades are summed as in ``core.rotor.turbine``.
+exactly. The tower is core's, restricted to the assumed shapes of the deck. Blades are summed as in ``core.turbine.turbine``.
 """
 
 from dataclasses import dataclass
@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.rotor.turbine import RZ, turned_axes
 from ....core.space import spatial as sp
+from ....core.turbine.turbine import RZ, turned_axes
 from ..sets import AzimuthSet
 from .deck import Deck
 from .nodes import Nodes, of_blade

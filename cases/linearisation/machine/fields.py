@@ -13,11 +13,11 @@ from scipy.optimize import linear_sum_assignment
 
 from ....core.blade import Blade
 from ....core.element.mesh import Mesh
-from ....core.rotor.assumed import Field
-from ....core.rotor.turbine import Assembled
 from ....core.sampling import mass_at
 from ....core.space import spatial as sp
 from ....core.tree.links import Links, twists
+from ....core.turbine.assumed import Field
+from ....core.turbine.turbine import Assembled
 from ..sets import AzimuthSet
 from ..states import State
 from .deck import Deck

@@ -14,12 +14,12 @@ from numpy.typing import NDArray
 from ....core.blade import straight
 from ....core.effects import ALL_EFFECTS
 from ....core.element.discretize import discretize
-from ....core.rotor import component
-from ....core.rotor.assumed import Assumed, Field, restricted_motions
-from ....core.rotor.turbine import Machine, Resolution, assemble, machine
 from ....core.spectrum import eigen
 from ....core.spectrum.mesh_solver import balance
 from ....core.threads import one_thread
+from ....core.turbine import component
+from ....core.turbine.assumed import Assumed, Field, restricted_motions
+from ....core.turbine.turbine import Machine, Resolution, assemble, machine
 from ...input.errors import CaseError
 from ..modes import MIN_OSCILLATION
 from ..multiblade import fixed_frame

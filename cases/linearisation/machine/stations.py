@@ -1,12 +1,12 @@
-"""Modes of a linearisation as motions at the stations of a turbine, in the form of ``core.rotor.stations``, at azimuth 0."""
+"""Modes of a linearisation as motions at the stations of a turbine, in the form of ``core.turbine.stations``, at azimuth 0."""
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....core.modes import STATIONS
-from ....core.rotor.stations import positions
-from ....core.rotor.turbine import RZ, turned_axes
 from ....core.space import spatial as sp
+from ....core.turbine.stations import positions
+from ....core.turbine.turbine import RZ, turned_axes
 from ..modes import Mode
 from ..multiblade import states_of_components
 from ..sets import AzimuthSet

@@ -6,10 +6,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import Blade
-from ....core.rotor.assumed import Curvatures, Field, bending, restricted_motions
-from ....core.rotor.component import with_strains
-from ....core.rotor.turbine import Machine
 from ....core.sampling import mass_at, stiffness_at
+from ....core.turbine.assumed import Curvatures, Field, bending, restricted_motions
+from ....core.turbine.component import with_strains
+from ....core.turbine.turbine import Machine
 from .deck import Deck, Shape
 
 Array = NDArray[np.float64]

@@ -25,10 +25,9 @@ from ....cases.input.changes import parse
 from ....cases.input.default_case import default_case
 from ....cases.input.errors import CaseError
 from ....cases.input.writing import writable
-from ....cases.plan import measurements
 from ....cases.plan.request import Execution, Request
 from ....cases.run.executors import Processes
-from ....cases.verify import pipeline
+from ....cases.verify import measurements, pipeline
 from ....core.blade import Blade
 from ....core.modes import Modes
 from ...campbell import changes as changes_table

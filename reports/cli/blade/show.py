@@ -18,7 +18,6 @@ from ....cases.input.properties import sections
 from ....cases.input.writing import writable
 from ....core.blade import Blade
 from ....core.root_loads import RootLoads, root_loads
-from ...campbell import root_loads as root_tables
 from ...campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
 from ...campbell.tables import terminal
 from ...shared import not_used
@@ -28,6 +27,7 @@ from ...shared.units import Units
 from ..arguments import given_speeds
 from ..errors import UsageError
 from ..mounting import Mounting
+from . import root_tables
 from .subjects import subjects as find_subjects
 
 Array = NDArray[np.float64]

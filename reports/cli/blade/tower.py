@@ -7,7 +7,7 @@ import numpy as np
 
 from ....cases.input.errors import NO_STATE, CaseError
 from ....cases.input.machines import towers
-from ....core.rotor.tower import TowerModes, tower_modes
+from ....core.turbine.tower import TowerModes, tower_modes
 from ...campbell import tables
 from ...campbell.tables import Sheet
 from ...shared import not_used

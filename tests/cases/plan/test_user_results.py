@@ -18,10 +18,10 @@ from southwell.cases.judge.results import Cell, Run
 from southwell.cases.judge.spectrum import of_blade
 from southwell.cases.judge.uncertainty import Estimate
 from southwell.cases.judge.witnesses import witnesses
-from southwell.cases.plan import measurements, names, user_columns, user_results
+from southwell.cases.plan import names, user_columns, user_results
 from southwell.cases.plan.blade import blades
 from southwell.cases.plan.subject import speeds_of_blades
-from southwell.cases.verify import matrix
+from southwell.cases.verify import matrix, measurements
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
 from southwell.references.protocol import registry

@@ -11,7 +11,7 @@ from southwell.cases.input.readers.openfast import turbine as reader
 from southwell.cases.plan import turbine as plan
 from southwell.cases.solve.turbine_reading import read_again
 from southwell.core.blade import Blade
-from southwell.core.rotor.turbine import shaft_pose
+from southwell.core.turbine.turbine import shaft_pose
 from southwell.references.protocol.process import Limits
 from southwell.tests.support.turbine_decks import deck
 

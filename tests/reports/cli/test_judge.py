@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 
 from southwell.cases.input.readers.openfast.turbine import read
-from southwell.core.rotor.turbine import machine
-from southwell.core.rotor.turbine_modes import turbine_modes
+from southwell.core.turbine.turbine import machine
+from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.reports.cli.app import main
 from southwell.tests.support.elastodyn_decks import shaped
 from southwell.tests.support.linearised_defects import exchanged_blades, healthy

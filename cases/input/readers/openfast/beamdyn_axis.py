@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .....core import gauss
+from .....core.space import gauss
 from .....core.space.spatial import skew
 
 Array = NDArray[np.float64]

@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from .....core.rotor.turbine import Drivetrain, Turbine, shaft_pose
 from .....core.space import spatial as sp
 from .....core.space.inertia import transformed
+from .....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from ...errors import CaseError
 from ..source import Mount, Source, Unused, unused
 from ..text import Text, keys, load, number, value, whole

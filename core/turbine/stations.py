@@ -11,12 +11,12 @@ from numpy.typing import NDArray
 from ..blade import Blade
 from ..element.mesh import Mesh
 from ..modes import STATIONS
+from ..rotor import multiblade
 from ..sampling import mass_at
 from ..space import spatial as sp
 from ..tree.links import Links, twists
 from ..tree.mode_shapes import mode_shapes
 from ..tree.pencil import Shape
-from . import multiblade
 from .component import Component
 from .turbine import RZ, Assembled, Turbine, turned_axes
 

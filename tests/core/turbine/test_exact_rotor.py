@@ -15,9 +15,9 @@ from scipy.optimize import brentq
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
-from southwell.core.rotor import component, turbine
 from southwell.core.spectrum.eigen import damped
 from southwell.core.spectrum.mesh_solver import balance
+from southwell.core.turbine import component, turbine
 
 OMEGA, RADIUS, LENGTH, EI, MASS = 6.0, 0.8, 10.0, 4e4, 5.0
 TILT, TILT_INERTIA, SLIDE, SLIDE_MASS = 2e4, 200.0, 8e3, 60.0

@@ -5,8 +5,8 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ..input.errors import CaseError
-from . import linearised
-from .user_results import Defaults, UserResults, read
+from ..plan import linearised
+from ..plan.user_results import Defaults, UserResults, read
 
 
 def defaults(data: str | None, inputs: str | None) -> Defaults:

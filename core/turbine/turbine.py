@@ -21,6 +21,8 @@ from ..effects import ALL_EFFECTS
 from ..element.branches import CLAMPED, attached, hub
 from ..element.discretize import discretize
 from ..element.mesh import Mesh
+from ..rotor import multiblade
+from ..rotor.periodic import CONSTANT, PeriodicError
 from ..space import spatial as sp
 from ..space.inertia import transformed
 from ..spectrum.mesh_solver import balance
@@ -28,10 +30,9 @@ from ..steady.blade_state import Steady
 from ..threads import one_thread
 from ..tree.links import Links
 from ..tree.pencil import Shape
-from . import component, multiblade
+from . import component
 from .assumed import Assumed, motions
 from .component import Component
-from .periodic import CONSTANT, PeriodicError
 from .tower import Support, held, tower_mesh
 
 Array = NDArray[np.float64]

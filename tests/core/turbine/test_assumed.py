@@ -8,12 +8,12 @@ import pytest
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
-from southwell.core.rotor import component
-from southwell.core.rotor.assumed import Assumed, Curvatures, Field, bending, restricted_motions
-from southwell.core.rotor.turbine import machine
-from southwell.core.rotor.turbine_modes import turbine_modes
 from southwell.core.spectrum import eigen
 from southwell.core.spectrum.mesh_solver import balance
+from southwell.core.turbine import component
+from southwell.core.turbine.assumed import Assumed, Curvatures, Field, bending, restricted_motions
+from southwell.core.turbine.turbine import machine
+from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.tests.support.turbines import small
 
 LENGTH, EI, MASS = 10.0, 2.0e5, 3.0

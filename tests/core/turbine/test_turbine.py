@@ -9,13 +9,13 @@ from scipy.optimize import brentq
 
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
-from southwell.core.rotor import turbine as tb
 from southwell.core.rotor.multiblade import blades_of, second_order
 from southwell.core.rotor.orbit import orbit_of
-from southwell.core.rotor.tower import Support, Tower, ordinal, tower_modes
-from southwell.core.rotor.turbine import Drivetrain, Resolution, assemble, machine
-from southwell.core.rotor.turbine_modes import linked, turbine_modes
 from southwell.core.spectrum import eigen
+from southwell.core.turbine import turbine as tb
+from southwell.core.turbine.tower import Support, Tower, ordinal, tower_modes
+from southwell.core.turbine.turbine import Drivetrain, Resolution, assemble, machine
+from southwell.core.turbine.turbine_modes import linked, turbine_modes
 from southwell.tests.support.turbines import SMALL, as_mechanism, rigid_nacelle_and_rotor, small
 
 OMEGA = 4.0

@@ -15,13 +15,14 @@ from scipy.optimize import linear_sum_assignment
 
 from .. import participation
 from ..modes import Modes
+from ..rotor import multiblade
+from ..rotor.whirl import whirl
 from ..spectrum import eigen
 from ..threads import one_thread
-from . import multiblade, stations
+from . import stations
 from .motion import Motion, displacements, flattened
 from .tower import NAMES, ordinal
 from .turbine import Assembled, Machine, assemble
-from .whirl import whirl
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
