@@ -19,7 +19,7 @@ from ..errors import CaseError
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
 from .openfast.elastodyn import complete
 from .source import OPENFAST_AXES, Mount, Reading, Source
-from .text import Text, fractions, keys, leading, load, table, value, whole, word
+from .text import Table, Text, fractions, keys, leading, load, table, value, whole, word
 
 Array = NDArray[np.float64]
 Named = dict[str, tuple[int, str]]
@@ -62,13 +62,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(
             f"{main.at(named['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade, or use `southwell modes`"
         )
-    text = load(path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
-    own = keys(text)
-    count = whole(text, own, "n_secs")
-    start = own["n_secs"][0] + 1
-    while start < len(text.lines) and not leading(text.lines[start]):
-        start += 1
-    sections = table(text, start, count, COLUMNS)
+    sections = section_table(main, named)
+    text = sections.text
     sections.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
     sections.positive("flp_iner", "edge_iner", zero=True)
     eta = fractions(sections, "sec_loc")
@@ -112,6 +107,21 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     factor = value(main, {"rpm_mult": (0, "1"), **named}, "romg_mult", "rpm_mult")
     speed = value(main, named, "rot_rpm", "romg") * factor * np.pi / 30
     return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, named, main)), speed)
+
+
+def section_table(main: Text, named: Named) -> Table:
+    """The table ``COLUMNS`` of the file that a main file names.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    text = load(main.path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
+    own = keys(text)
+    count = whole(text, own, "n_secs")
+    start = own["n_secs"][0] + 1
+    while start < len(text.lines) and not leading(text.lines[start]):
+        start += 1
+    return table(text, start, count, COLUMNS)
 
 
 def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:

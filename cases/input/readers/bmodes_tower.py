@@ -22,7 +22,7 @@ from . import bmodes
 from .bmodes import COLUMNS, FACTORS, Named
 from .matrices import BEAMDYN, in_axes
 from .source import Source, Unused, unused
-from .text import Text, fractions, keys, leading, load, table, value, whole, word
+from .text import Text, fractions, keys, leading, load, value, whole
 
 Array = NDArray[np.float64]
 
@@ -53,13 +53,7 @@ def read(path: Path) -> tuple[Tower, Source]:
     """
     main = load(path)
     named = keys(main)
-    sections = load(path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
-    own = keys(sections)
-    count = whole(sections, own, "n_secs")
-    start = own["n_secs"][0] + 1
-    while start < len(sections.lines) and not leading(sections.lines[start]):
-        start += 1
-    rows = table(sections, start, count, COLUMNS)
+    rows = bmodes.section_table(main, named)
     rows.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
     rows.positive("flp_iner", zero=True)
     jumps = _jumps(rows["sec_loc"])
@@ -77,11 +71,11 @@ def read(path: Path) -> tuple[Tower, Source]:
             stations=fractions(rows, "sec_loc") * height,
             stiffness=section_stiffness(p["axial_stff"], p["tor_stff"], p["flp_stff"], p["flp_stff"]),
             mass=section_mass(p["mass_den"], p["flp_iner"], p["flp_iner"]),
-            twist=np.zeros(count),
+            twist=np.zeros(len(rows["sec_loc"])),
             tip_mass=_top(main, named),
         )
     except BladeError as error:
-        raise CaseError(f"{sections.path}: {error}") from error
+        raise CaseError(f"{rows.text.path}: {error}") from error
     base, base_note = _base(main, named, draft)
     wires = _wires(main, named, height)
     notes = [
@@ -102,7 +96,7 @@ def read(path: Path) -> tuple[Tower, Source]:
         check(height, support)
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from error
-    return Tower(beam, support), Source(NAME, (path, sections.path), AXES, tuple(notes), _unused(main, named))
+    return Tower(beam, support), Source(NAME, (path, rows.text.path), AXES, tuple(notes), _unused(main, named))
 
 
 def _jumps(sec_loc: Array) -> Array:
