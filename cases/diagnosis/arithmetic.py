@@ -95,7 +95,8 @@ def _orders(given: Array, reference: Array, labels: Sequence[Label], every: Sequ
     """The reference in other orders of the modes, of which the program may have another one, twice as many or a part."""
     out = [("", reference)]
     with np.errstate(all="ignore"):
-        cost = np.nanmean(np.abs(np.log(given[:, :, None] / reference[:, None, :])), axis=0)
+        away = np.abs(np.log(given[:, :, None] / reference[:, None, :]))
+        cost = np.nansum(away, axis=0) / (~np.isnan(away)).sum(axis=0)
     if np.isfinite(cost).all() and len(labels) > 1:
         _, order = linear_sum_assignment(cost)
         moved = [k for k, other in enumerate(order.tolist()) if k != other]

@@ -1,5 +1,7 @@
 """Differences by arithmetic are recognised before any hypothesis about the blade."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -62,3 +64,12 @@ def test_random_numbers_are_no_arithmetic(size: float) -> None:
     rng = np.random.default_rng(5)
     altered = [name(REFERENCE * np.exp(size * rng.standard_normal(REFERENCE.shape))) for _ in range(20)]
     assert altered.count("") >= 19
+
+
+def test_a_mode_without_any_number_is_no_reason_for_a_warning() -> None:
+    """The mean over no speeds used to print one."""
+    given = 2 * np.pi * REFERENCE
+    given[:, 2] = np.nan
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        assert name(given).startswith("constant ratio 2π")
