@@ -53,7 +53,7 @@ def verdict(run: Run) -> str:
     wrong = counts["fail"] - missing
     contradict = f"{wrong} {'answer contradicts' if wrong == 1 else 'answers contradict'} {OWN}" if wrong else ""
     if contradictions := [*properties.contradictions(run), *([contradict] if wrong else [])]:
-        return f"No: {', and '.join([*contradictions, *([lacking] if lacking else [])])}."
+        return f"No: {'; '.join([*contradictions, *([lacking] if lacking else [])])}."
     unsure = counts["inconclusive"]
     missed = sum(control.missed for control in run.controls)
     alone = _unconfirmed(run)
