@@ -89,12 +89,16 @@ class Weight:
     @property
     def line(self) -> str:
         """One line on the difference."""
-        resolution = f", of which refinement changed {100 * self.change:+.2g} %: too few elements to judge"
+        resolution = f", of which refinement changed {_percent(self.change)}: too few elements to judge"
         resolution = resolution if self.verdict == "inconclusive" else ""
         return (
             f"{self.name}: {self.model:.6g} {self.unit} in the code's model, {self.stations:.6g} {self.unit} by quadrature of "
-            f"the stations: {100 * self.finest:+.2g} %{resolution}"
+            f"the stations: {_percent(self.finest)}{resolution}"
         )
+
+
+def _percent(value: float) -> str:
+    return f"{100 * value:+.2g} %".replace("-", "−")
 
 
 def stations_of(blade: Blade) -> Stations:

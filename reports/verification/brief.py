@@ -53,7 +53,7 @@ def write(run: Run, folder: Path, document: Document) -> Path:
 def render(run: Run, folder: Path, document: Document) -> str:
     """The page as Markdown."""
     cases = summary.cases(run)
-    name = plain(cases[0]) if len(cases) == 1 else f"{len(cases)} blades and mechanisms"
+    name = plain(cases[0]) if len(cases) == 1 else f"{len(cases)} cases"
     ranked = sorted(cases, key=lambda case: -_used(run, case))
     figure = next((f for case in ranked if (folder / (f := f"figures/{file_name(case)}-campbell.svg")).is_file()), "")
     rest = f" {ROWS} of {len(cases)}, the smallest margins first; the report has all." if len(cases) > ROWS else ""
@@ -87,7 +87,7 @@ def _cover(run: Run, folder: Path, document: Document) -> list[dict[str, str]]:
         "document": document.number,
         "revision": document.revision,
         "source of the blade": plain(inputs),
-        "input": f"settings of {len(run.settings)} blades, SHA-256 `{sha256(repr(run.settings).encode()).hexdigest()}`",
+        "input": f"settings of {len(run.settings)} cases, SHA-256 `{sha256(repr(run.settings).encode()).hexdigest()}`",
         "results": f"{RESULTS}, SHA-256 `{digest}`",
         "computed, written": f"{computed:%Y-%m-%d %H:%M} UTC, {datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
         "versions": plain(versions),

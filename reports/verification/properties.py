@@ -1,6 +1,6 @@
 """The second reading of a blade's file, the codes' models and other descriptions of the blade, in words and tables."""
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 from ...cases.judge.results import PropertyCheck, Run, Verdict
 from ...cases.judge.verdict import percent, unsigned
@@ -31,7 +31,11 @@ def contradictions(run: Run) -> list[str]:
 
 def lines(run: Run) -> list[str]:
     """Lines on properties that fail or cannot be judged, and on what was read a second time or could not be."""
-    out = [f"{subject(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict in STATED]
+    unsure = [c for c in run.property_checks if c.quantity == "fingerprint" and c.verdict == "inconclusive"]
+    out = [
+        f"{subject(c)}: {c.reason} ({c.case})." for c in run.property_checks if c.verdict in STATED and c not in unsure
+    ]
+    out += [_undecided(code, [c for c in unsure if c.code == code]) for code in _codes(unsure)]
     agreeing: dict[str, list[str]] = {}  # reader → properties of blades
     readings = [c for c in run.property_checks if c.quantity == "reading"]
     for case in dict.fromkeys(c.case for c in readings):
@@ -46,6 +50,17 @@ def lines(run: Run) -> list[str]:
         what = blades[0] if len(blades) == 1 else f"properties of each of {len(blades)} blades"
         out.append(f"Second reading: {reader} reads the same {what}.")
     return out + _unchanged(run)
+
+
+def _undecided(code: str, checks: Sequence[PropertyCheck]) -> str:
+    """One line on the properties of a code's model that refinement still changes by what they differ; reasons are per case."""
+    if len(checks) == 1:
+        return f"{subject(checks[0])}: {checks[0].reason} ({checks[0].case})."
+    cases = ", ".join(dict.fromkeys(c.case for c in checks))
+    return (
+        f"Model of {_solver(code)}: {len(checks)} properties need more elements to be judged; the largest differs by "
+        f"{size(_largest(checks))} ({cases})."
+    )
 
 
 def _unchanged(run: Run) -> list[str]:

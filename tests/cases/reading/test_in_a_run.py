@@ -1,6 +1,7 @@
 """A run with a reader, a sampling or an adapter that is wrong ends with status 1 and names the property."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -152,3 +153,18 @@ def test_a_code_that_reports_nothing_says_so(deck: Path, monkeypatch: pytest.Mon
     rows = [c for c in found.property_checks if c.code == "exudyn-tree"]
     assert [(c.verdict, c.reason) for c in rows] == [("not applicable", "the code reports no mass")]
     assert isinstance(rows[0], PropertyCheck)
+
+
+def test_properties_that_need_more_elements_are_one_line_for_each_code() -> None:
+    """Eleven such lines stood above the evidence of the whole matrix; nothing that fails is shortened."""
+    row = PropertyCheck(
+        *("a", "beam", "1", "fingerprint", "tip flexibility about x", 1.0, 1.1, "rad/(N m)", -0.09, 1e-3),
+        *("inconclusive", "too few elements to judge"),
+    )
+    rows = (row, replace(row, case="b", part="tip flexibility about y", difference=0.02))
+    run = Run(cells=(), settings=(), property_checks=rows)
+    assert properties.lines(run) == [
+        "Model of beam: 2 properties need more elements to be judged; the largest differs by −9.00 % (a, b)."
+    ]
+    wrong = replace(run, property_checks=tuple(replace(r, verdict="fail", reason="wrong") for r in rows))
+    assert properties.lines(wrong) == ["Model of beam: wrong (a).", "Model of beam: wrong (b)."]
