@@ -7,13 +7,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from . import floquet, mode_tables, tracking
+from ..input.errors import CaseError
+from . import floquet, hawcstab2, mode_tables, tracking
 from .checks import azimuths, blades, disagreement, structure, tables
 from .checks.frames import in_rotating_frame
 from .findings import DEFECT, Finding
 from .judged import AVERAGED, FLOQUET, JudgedSet, Judgement, by_level
 from .lin_file import read
-from .mode_tables import is_table
+from .mode_tables import ModeTable
 from .modes import Mode, Spectrum, spectrum
 from .sets import AzimuthSet, collect
 
@@ -29,6 +30,9 @@ STRUCTURAL_DEFECTS = (
 )
 """Defects after which comparisons between blades and azimuths would only repeat them."""
 
+TABLES = (".csv", ".cmb", ".amp")
+"""Suffixes of tables of modes."""
+
 MAX_PERIODIC = 1e-4
 """Largest relative difference of Floquet's frequencies from those of the mean matrix at which the mean is kept."""
 
@@ -38,18 +42,33 @@ def judge(paths: Sequence[Path]) -> Judgement:
 
     Args:
         paths: ``.lin`` files, of which those with the same stem are the azimuths of one operating point; tables of modes
-            (``.csv``, HAWCStab2's ``.cmb``).
+            (``.csv``, HAWCStab2's ``.cmb``; an ``.amp`` file with the same stem names its modes).
 
     Raises:
         CaseError: if a file cannot be used.
     """
-    listed = tuple(mode_tables.read(path) for path in paths if is_table(path))
-    sets = tuple(judge_set(each) for each in collect([read(path) for path in paths if not is_table(path)]))
+    listed = tuple(_tables(paths))
+    linearisations = [path for path in paths if path.suffix.lower() not in TABLES]
+    sets = tuple(judge_set(each) for each in collect([read(path) for path in linearisations]))
     tracked = tracking.track(sets)
     findings = [finding for each in sets for finding in each.findings]
     findings += [finding for table in listed for finding in mode_tables.findings(table)]
     findings += [*tracking.drift(sets), *tracking.lines(sets, tracked)]
     return Judgement(sets, tracked, listed, by_level(findings))
+
+
+def _tables(paths: Sequence[Path]) -> Iterator[ModeTable]:
+    """Tables of modes; those of HAWCStab2 with the amplitudes of the same stem."""
+    amplitudes = {path.with_suffix(""): path for path in paths if path.suffix.lower() == ".amp"}
+    for path in paths:
+        if path.suffix.lower() == ".csv":
+            yield mode_tables.read_csv(path)
+        elif path.suffix.lower() == ".cmb":
+            yield hawcstab2.read(path, amplitudes.pop(path.with_suffix(""), None))
+    for path in amplitudes.values():
+        raise CaseError(
+            f"{path}: amplitudes without frequencies: give {path.with_suffix('.cmb').name} of the same analysis with it"
+        )
 
 
 def judge_set(each: AzimuthSet) -> JudgedSet:

@@ -1,7 +1,6 @@
-"""Tables of modes over operating points: CSV, and HAWCStab2's ``.cmb``."""
+"""Tables of modes over operating points, from CSV; what a table alone shows of its modes."""
 
 import math
-import re
 from collections import defaultdict
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -36,6 +35,7 @@ class ModeTable:
         names: of the modes.
         frequencies: Hz (mode, operating point); NaN where the table has none.
         damping: damping ratios; NaN where the table has none.
+        shares: share of the motion that names each mode, between 0 and 1; empty if the table has no shapes.
     """
 
     name: str
@@ -44,23 +44,15 @@ class ModeTable:
     names: tuple[str, ...]
     frequencies: Array
     damping: Array
+    shares: tuple[float, ...] = ()
 
 
-def is_table(path: Path) -> bool:
-    """Whether a file is a table of modes, by its name."""
-    return path.suffix.lower() in (".csv", ".cmb")
-
-
-def read(path: Path) -> ModeTable:
-    """Read a table of modes.
+def read_csv(path: Path) -> ModeTable:
+    """Read a table of modes with one row for each mode and rotor speed.
 
     Raises:
         CaseError: one line with the file and the line, the value, the likely cause and the remedy.
     """
-    return _cmb(path) if path.suffix.lower() == ".cmb" else _csv(path)
-
-
-def _csv(path: Path) -> ModeTable:
     (_, head), *rows = files.table(path, "correct the path")
     columns = {name.strip().lower(): k for k, name in enumerate(head)}
     speed = next((name for name in SPEEDS if name in columns), None)
@@ -99,38 +91,6 @@ def _csv(path: Path) -> ModeTable:
     points = sorted({point for mode in values.values() for point in mode})
     grid = np.array([[mode.get(point, (math.nan, math.nan)) for point in points] for mode in values.values()])
     return ModeTable(path.name, np.array(points), "Hz", tuple(values), grid[:, :, 0], grid[:, :, 1])
-
-
-def _cmb(path: Path) -> ModeTable:
-    """HAWCStab2: a comment line that ends with the number of modes; wind speed, frequencies, damping ratios in per cent."""
-    first, *lines = files.text(path, older=True).splitlines()
-    found = re.search(r"(\d+)\s*$", first)
-    rows: list[list[float]] = []
-    for k, line in enumerate(lines, 2):
-        if not line.strip() or line.lstrip().startswith(("#", "%")):
-            continue
-        values = [number(token) for token in line.split()]
-        if any(value is None or not math.isfinite(value) or abs(value) > 1e100 for value in values):
-            raise CaseError(f"{path}: line {k}: not a row of finite numbers: correct it")
-        rows.append([value for value in values if value is not None])
-        if len(rows[0]) != len(rows[-1]):
-            raise CaseError(
-                f"{path}: line {k}: {len(rows[-1])} numbers instead of {len(rows[0])}: cut short? give it whole"
-            )
-    if not rows or not found:
-        raise CaseError(
-            f"{path}: not a .cmb file of HAWCStab2: its first line ends with the number of modes, rows of numbers follow"
-        )
-    n = int(found[1])
-    if n < 1 or (len(rows[0]) - 1) not in (n, 2 * n, 3 * n):
-        raise CaseError(
-            f"{path}: line 2: {len(rows[0])} numbers for {n} modes: expected an operating point, and for each mode its "
-            "frequency, its damping and optionally the real part of its eigenvalue"
-        )
-    table = np.array(rows).T
-    damping = table[n + 1 : 2 * n + 1] / 100 if len(table) > n + 1 else np.full((n, len(rows)), np.nan)
-    names = tuple(f"mode {k + 1}" for k in range(n))
-    return ModeTable(path.name, table[0], "m/s", names, table[1 : n + 1], damping)
 
 
 def findings(table: ModeTable) -> Iterator[Finding]:

@@ -32,7 +32,7 @@ def command(
     ----------
     files
         Files `case.*.lin`, also compressed (.gz): those with the same stem are the azimuths of one operating point. Tables of
-        modes: .csv, HAWCStab2's .cmb.
+        modes: .csv, HAWCStab2's .cmb; its .amp with the same stem names the modes.
     fst
         Primary file (.fst) of the turbine: pair the modes with those of Southwell's turbine by shape, and split each difference
         into the deck's mode shapes and nodes, gravity, deflection, aerodynamics, and the rest with its causes.

@@ -98,11 +98,24 @@ def _several(judgement: Judgement, width: int, every: bool) -> Iterator[Table]:
 
 
 def _listed(table: ModeTable, width: int, every: bool) -> Iterator[Table]:
+    """Frequencies, and damping where it is given, of a table of modes; the share of the motion that names a mode."""
     factor, unit = (60.0, "rpm") if table.unit == "Hz" else (1.0, table.unit)
     head = ["mode", *(f"{factor * point:.4g} {unit}" for point in table.points)]
-    pairs = list(zip(table.names, table.frequencies, strict=True))
-    rows = [(name, *("" if np.isnan(f) else f"{f:.5g}" for f in values)) for name, values in pairs]
-    yield from tables(head, rows if every else rows[:MOST], width, f"{table.name}: frequency in Hz")
+    shares = [(f"{100 * share:.0f}",) for share in table.shares] or [()] * len(table.names)
+    rows = [
+        (name, *share, *("" if np.isnan(f) else f"{f:.5g}" for f in values))
+        for name, share, values in zip(table.names, shares, table.frequencies, strict=True)
+    ]
+    shown = len(rows) if every else MOST
+    named = ["participation %"] if table.shares else []
+    yield from tables([head[0], *named, *head[1:]], rows[:shown], width, f"{table.name}: frequency in Hz")
+    damped = [
+        (name, *("" if np.isnan(value) else f"{100 * value:.3g}" for value in values))
+        for name, values in zip(table.names, table.damping, strict=True)
+        if not np.isnan(values).all()
+    ]
+    if damped:
+        yield from tables(head, damped[:shown], width, f"{table.name}: damping in %")
 
 
 PARTS = (SHAPES, NODES, GRAVITY, DEFLECTION, AERODYNAMICS, REST)
@@ -189,6 +202,26 @@ def plain(judgement: Judgement, compared: Sequence[Comparison] = ()) -> dict[str
                 **(_plain_comparison(compared[k]) if k < len(compared) else {}),
             }
             for k, judged in enumerate(judgement.sets)
+        ],
+        "tables": [_plain_table(table) for table in judgement.tables],
+    }
+
+
+def _plain_table(table: ModeTable) -> dict[str, object]:
+    return {
+        "name": table.name,
+        "operating_points": table.points.tolist(),
+        "unit": table.unit,
+        "modes": [
+            {
+                "name": name,
+                "frequency_hz": [_finite(value) for value in frequencies.tolist()],
+                "damping_ratio": [_finite(value) for value in damping.tolist()],
+                "participation": table.shares[k] if table.shares else None,
+            }
+            for k, (name, frequencies, damping) in enumerate(
+                zip(table.names, table.frequencies, table.damping, strict=True)
+            )
         ],
     }
 

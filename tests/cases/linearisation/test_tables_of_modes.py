@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input.errors import CaseError
-from southwell.cases.linearisation import mode_tables
+from southwell.cases.linearisation import hawcstab2, mode_tables
 from southwell.cases.linearisation.judgement import judge, judge_set
 from southwell.cases.linearisation.lin_file import parsed
 from southwell.cases.linearisation.sets import azimuth_set
@@ -36,7 +36,7 @@ def test_a_multiple_of_the_rotor_speed_is_no_mode(tmp_path: Path) -> None:
 def test_eigenvalues_are_read(tmp_path: Path) -> None:
     path = tmp_path / "modes.csv"
     path.write_text("omega_rad_s;mode;real_rad_s;imag_rad_s\n1.0;tower;-0.3;0.4\n")
-    table = mode_tables.read(path)
+    table = mode_tables.read_csv(path)
     assert table.frequencies[0, 0] == pytest.approx(0.5 / (2 * np.pi))
     assert table.damping[0, 0] == pytest.approx(0.6)
 
@@ -44,11 +44,50 @@ def test_eigenvalues_are_read(tmp_path: Path) -> None:
 def test_a_table_of_hawcstab2_is_read(tmp_path: Path) -> None:
     path = tmp_path / "turbine.cmb"
     path.write_text(CMB)
-    table = mode_tables.read(path)
+    table = hawcstab2.read(path)
     assert table.unit == "m/s"
     assert table.frequencies.tolist() == [[0.33, 0.33], [0.66, 0.67]]
     assert table.damping.tolist() == [[0.01, -0.005], [0.4, 0.41]]
     assert "negative damping" in {finding.name for finding in judge([path]).findings}
+
+
+def amplitudes(largest: list[int], points: tuple[float, ...] = (4.0, 8.0)) -> str:
+    """An ``.amp`` file of HAWCStab2 whose mode k moves with amplitude 2 in motion ``largest[k]`` and 1 in the next."""
+    head = "# Mode number\n# Column num.\n#\n#\n# Wind speed\n"
+    values = np.zeros((len(largest), len(hawcstab2.MOTIONS), 2))
+    for k, motion in enumerate(largest):
+        values[k, motion, 0], values[k, motion - 1, 0] = 2.0, 1.0
+    values[:, :, 1] = 90.0
+    return head + "".join(f"{point} {' '.join(map(str, values.ravel()))}\n" for point in points)
+
+
+def test_the_amplitudes_of_hawcstab2_name_its_modes(tmp_path: Path) -> None:
+    """The second motion of the file is fore-aft, the eleventh backward flap; the share is 2² / (2² + 1²)."""
+    (tmp_path / "turbine.cmb").write_text(CMB)
+    (tmp_path / "turbine.amp").write_text(amplitudes([1, 10]))
+    (table,) = judge([tmp_path / "turbine.amp", tmp_path / "turbine.cmb"]).tables
+    assert table.names == ("tower fore-aft 1", "flapwise 1 backward")
+    assert table.shares == pytest.approx((0.8, 0.8))
+    (tmp_path / "turbine.amp").write_text(amplitudes([5, 5]))
+    assert hawcstab2.read(tmp_path / "turbine.cmb", tmp_path / "turbine.amp").names == ("drivetrain 1", "drivetrain 2")
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        (amplitudes([1]), "31 numbers in a row, expected 61"),
+        (amplitudes([1, 10], (4.0, 9.0)), "its wind speeds differ"),
+        (amplitudes([1, 10]).replace("2.0", "0").replace("1.0", "0"), "mode 1 has no amplitude"),
+        ("#\n", "0 numbers in a row"),
+    ],
+)
+def test_amplitudes_of_another_analysis_are_refused(tmp_path: Path, text: str, words: str) -> None:
+    (tmp_path / "turbine.cmb").write_text(CMB)
+    (tmp_path / "turbine.amp").write_text(text)
+    with pytest.raises(CaseError, match=words):
+        judge([tmp_path / "turbine.cmb", tmp_path / "turbine.amp"])
+    with pytest.raises(CaseError, match=r"amplitudes without frequencies: give turbine\.cmb"):
+        judge([tmp_path / "turbine.amp"])
 
 
 @pytest.mark.parametrize(
@@ -68,7 +107,7 @@ def test_a_table_of_hawcstab2_is_read(tmp_path: Path) -> None:
 def test_tables_that_cannot_be_used_are_refused(tmp_path: Path, name: str, text: str, words: str) -> None:
     (tmp_path / name).write_text(text)
     with pytest.raises(CaseError, match=words.replace(".", r"\.")):
-        mode_tables.read(tmp_path / name)
+        judge([tmp_path / name])
 
 
 def test_modes_are_tracked_by_shape() -> None:
