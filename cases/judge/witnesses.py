@@ -18,7 +18,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Literal
 
-from ...references.protocol.interface import CORE
+from ...references.protocol.interface import ADAPTERS, CORE
 from .results import Cell, Origin, Run
 from .verdict import AGREES, judge
 
@@ -135,6 +135,11 @@ def groups(all_witnesses: Iterable[Witness]) -> list[tuple[Witness, ...]]:
 
 def _linked(a: Witness, b: Witness) -> bool:
     return bool(a.origin and b.origin and any(x == y for x, y in zip(_key(a.origin), _key(b.origin), strict=True)))
+
+
+def foreign_theory(group: Sequence[Witness]) -> bool:
+    """Whether the theory of a member is not made by an adapter of this package (``Independence.theory``)."""
+    return any(w.origin and ADAPTERS not in w.origin.theory for w in group)
 
 
 @dataclass(frozen=True)

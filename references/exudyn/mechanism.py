@@ -1,8 +1,9 @@
 """A mechanism in Exudyn: a kinematic tree in relative coordinates, each loop closed by a generic joint.
 
-Shared with core is only the description: which joints form the tree, and their frames. Exudyn computes motion, inertia
-forces, springs, the steady state and its linearisation. A loop is closed by the joint itself (its locked axes as
-algebraic equations), not by core's weld beyond a copy of the body.
+Core's spanning tree is used: which joints form it, their frames, and the bodies' places. Exudyn computes motion, inertia
+forces and springs, the equations of the loops, and their derivatives. A loop is closed by the joint itself (its locked
+axes as algebraic equations), not by core's weld beyond a copy of the body. The steady state is found here, since
+Exudyn's static solver omits the curvature of the constraints from its Jacobian and stops at 1e-8.
 
 Exudyn's stiffness matrix omits the curvature of the constraints, ∂(Jλ)/∂q, which Newton's method does not need. A modal
 analysis needs it (a hanging pendulum on a joint would have no stiffness), so it is added here by differences of

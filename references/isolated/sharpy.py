@@ -6,9 +6,10 @@ displacements and rotation vectors quadratic in between, reduced integration, an
 fourth order for uniform blades, second order where properties vary. Each element has the mean compliance and mass of
 its part of the blade.
 
-Positions and axes of the sections are those of the adapters' reference line. Beam, inertia, steady state and
-linearisation are SHARPy's. Twist is included in the elements' stiffness and mass, not in their axes, because SHARPy
-does not allow axes to jump between elements, and a blade's may. Rigid shears are given a large stiffness.
+Positions and axes of the sections are those of the adapters' reference line. SHARPy assembles the forces, and the mass,
+gyroscopic and stiffness matrices, of the deformed, rotating beam; Newton's method on them is the adapter's. Twist is
+included in the elements' stiffness and mass, not in their axes, because SHARPy does not allow axes to jump between
+elements, and a blade's may. Rigid shears are given a large stiffness.
 """
 
 import base64

@@ -44,7 +44,7 @@ class PinocchioTurbine(TurbineAdapter):
     title = "Pinocchio, lumped bodies of the turbine"
     independence = Independence(
         "Pinocchio",
-        "lumped bodies on elements of integrated compliance",
+        "lumped bodies on elements of integrated compliance, both made by the adapter",
         "Pinocchio, derivatives of recursive Newton-Euler",
         sections=PLACING,
         eigensolver="the adapters' own, in Fourier coordinates of the blades",

@@ -1,7 +1,8 @@
 """Mechanisms with closed loops in Pinocchio, reduced to the null space of the loops' equations.
 
 Shared with core is only the description: bodies, joints with their coordinates, springs, loads. The spanning tree is
-built here (``spanning``) and may cut other joints. Pinocchio computes inertia forces and their derivatives. Loops are
+built here (``spanning``) and may cut other joints. Pinocchio computes inertia forces and their derivatives; the steady
+state is found here. Loops are
 closed by Haug's products of directions (``closure``), not by core's weld beyond a copy of the body. The equations of
 motion are reduced by an orthonormal basis of the null space of the constraint Jacobian (E. J. Haug 1989, ch. 11), not
 by core's partition into independent and dependent coordinates. The curvature of the constraints under their reactions
@@ -70,6 +71,7 @@ class PinocchioMechanism(MechanismAdapter):
         engine="Pinocchio",
         theory="tree of rigid bodies, loops by products of directions",
         rotation="Pinocchio, derivatives of recursive Newton-Euler",
+        sections="the adapter's spanning tree",
         eigensolver="the adapters' own, with damping",
     )
 

@@ -41,6 +41,9 @@ DIGITS = 9
 CORE = "core"
 """An origin in ``Independence`` that is core."""
 
+ADAPTERS = "made by the adapter"
+"""Ending of the name of a theory whose weak forms, elements or hinges are the adapter's, not the program's."""
+
 REFERENCE_LINE = "the adapters' reference line"
 """The origin of positions and axes that ``references.theories.reference_line`` integrates."""
 
@@ -56,9 +59,10 @@ class Independence:
     matrix in ``tests/cases/judge/test_groups.py``.
 
     Attributes:
-        engine: the program that assembles the equations of motion, e.g. ``Exudyn``. What the adapter makes itself, such as
-            weak forms or lumped masses, is named in ``theory``.
-        theory: the derivation and discretisation of the matrices, e.g. ``ANCF cable``.
+        engine: the foreign program that computes the matrices or the forces, or part of them, e.g. ``Exudyn``.
+        theory: the derivation and discretisation of the matrices, e.g. ``ANCF cable``. A part that the adapter makes itself,
+            such as lumped masses, is named; weak forms or elements are called ``ADAPTERS``: a blade on which only such
+            theories agree is reported as one without a foreign theory.
         rotation: origin of the centrifugal and gyroscopic terms.
         sections: origin of the sections' positions and axes: ``blade`` (a straight axis, twist and pitch as given),
             ``REFERENCE_LINE``, or core's frames. All but those with core's discretisation interpolate stiffness and mass

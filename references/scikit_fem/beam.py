@@ -43,7 +43,9 @@ class ScikitFemBeam(BladeAdapter):
 
     name = "scikit-fem"
     title = "scikit-fem, prestressed beam"
-    independence = Independence("scikit-fem", "prestressed beam, weak forms of the adapter", "scikit-fem's adapter")
+    independence = Independence(
+        "scikit-fem", "prestressed beam, weak forms made by the adapter", "scikit-fem's adapter"
+    )
     effects = ALL_EFFECTS
     levels = (COARSEST, 2 * COARSEST, 4 * COARSEST)
     order = 4

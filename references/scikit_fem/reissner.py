@@ -49,7 +49,7 @@ class ScikitFemReissner(BladeAdapter):
     title = "scikit-fem, geometrically exact beam"
     independence = Independence(
         "scikit-fem",
-        "mixed geometrically exact beam, weak forms of the adapter",
+        "mixed geometrically exact beam, weak forms made by the adapter",
         "scikit-fem-reissner's adapter",
         sections=REFERENCE_LINE,
     )

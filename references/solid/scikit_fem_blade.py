@@ -35,7 +35,7 @@ class ScikitFemSolid(BladeAdapter):
     title = "scikit-fem, solid elements"
     independence = Independence(
         "scikit-fem",
-        "three-dimensional solid, stiffness assembled by the adapter",
+        "three-dimensional solid, stiffness made by the adapter",
         "scikit-fem-solid's adapter",
         sections="the solid's geometry",
     )

@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ...cases.judge.results import Cell, Run
 from ...cases.judge.verdict import unsigned
-from ...cases.judge.witnesses import FINE, Witness, engines, groups, short, witnesses
+from ...cases.judge.witnesses import FINE, Witness, engines, foreign_theory, groups, short, witnesses
 from ..shared import summary
 
 
@@ -79,7 +79,13 @@ def headline(run: Run) -> str:
     low, many = len(counted[least]), max(len(found) for found in counted.values())
     who = "; ".join(engines(group) for group in counted[least])
     span = f"{low} ({least}{f': {who}' if who else ''})" + (f" to {many}" if many > low else "")
-    return f"Independent groups that agree, for each blade: {span}; codes that share an engine or a theory count once."
+    own = [case for case, agreeing in counted.items() if agreeing and not any(map(foreign_theory, agreeing))]
+    warning = (
+        f" No foreign theory agrees for {', '.join(own)}: the codes solve models that their adapters make."
+        if own
+        else ""
+    )
+    return f"Independent groups that agree, for each blade: {span}; codes that share an engine or a theory count once.{warning}"
 
 
 def missing(run: Run) -> list[str]:

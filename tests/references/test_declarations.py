@@ -10,7 +10,7 @@ import grimp
 import pytest
 
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import CORE, REFERENCE_LINE, BladeAdapter
+from southwell.references.protocol.interface import ADAPTERS, CORE, REFERENCE_LINE, BladeAdapter
 
 from ..support.beams import PARK
 from ..support.codes import BLADE_CODES
@@ -70,6 +70,14 @@ def test_the_adapters_eigensolver_is_declared_by_the_codes_that_use_it(name: str
     own = "southwell.references.matrices.quadratic" in imported
     engine = registry.code(name).independence
     assert (engine.eigensolver == "the adapters' own") == own or engine.eigensolver == engine.engine
+
+
+def test_theories_made_by_adapters_are_declared_as_such() -> None:
+    declared = {name: registry.code(name).independence for name in registry.names()}
+    assert {name for name, origin in declared.items() if origin and ADAPTERS in origin.theory} == {
+        "exudyn-tree", "exudyn-turbine", "pinocchio-turbine", "scikit-fem", "scikit-fem-reissner",
+        "scikit-fem-solid",
+    }  # fmt: skip
 
 
 @pytest.mark.parametrize("name", ["scikit-fem", "scikit-fem-reissner"])

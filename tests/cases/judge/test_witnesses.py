@@ -9,6 +9,7 @@ from rich.console import Console
 
 from southwell.cases.judge.results import Cell, Origin, Run, Setting
 from southwell.cases.judge.witnesses import groups, witnesses
+from southwell.references.protocol.interface import ADAPTERS
 from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification import terminal
 from southwell.reports.verification import witnesses as reported
@@ -92,6 +93,15 @@ def test_a_disagreement_outweighs_an_open_answer() -> None:
     unknown = cell("alpha", mode=3, uncertainty=None, verdict="inconclusive")
     (witness,) = witnesses(run(cell("alpha"), unknown, wrong), "beam")
     assert witness.standing == "disagrees"
+
+
+def test_agreement_of_adapters_theories_alone_is_said() -> None:
+    """The programs are foreign, but what they solve is not."""
+    made = run(cell("alpha"), cell("beta"))
+    ours = replace(made, origins=tuple(replace(o, theory=f"forms of {o.code}, {ADAPTERS}") for o in made.origins))
+    mixed = replace(made, origins=(ours.origins[0], made.origins[1]))
+    said = [reported.headline(r) for r in (made, mixed, ours)]
+    assert ["No foreign theory agrees for beam" in line for line in said] == [False, False, True]
 
 
 def test_a_measurement_is_no_witness() -> None:
