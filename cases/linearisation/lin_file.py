@@ -28,7 +28,7 @@ MAX_STATES = 3000
 _TABLE = re.compile(r"Order of ([\w ]+):")
 _ROW = re.compile(r"\s*(\S+)\s+(\S+)\s+([TF])\s+(?:(\d+|\*+)\s+)?(\S.*)")
 _MATRIX = re.compile(r"(\w+):\s*(\S+)\s+x\s+(\S+)\s*")
-_VERSION = re.compile(r"at commit (\S+)")
+_VERSION = re.compile(r"at commit (\S+)|using OpenFAST \(([^\s,)]+)")
 _DATE = re.compile(r"generated on (\S+ at \S+)")
 _MANTISSA = re.compile(r"[+-]?(\d*)\.?(\d*)(?:[EeDd]([+-]?\d+))?")
 
@@ -158,7 +158,7 @@ def parsed(path: Path, content: str) -> LinFile:
             raise CaseError(f"{path}: {name}: {what} in the header: give the file as OpenFAST wrote it")
     return LinFile(
         path,
-        version[1] if version else "unknown",
+        (version[1] or version[2]) if version else "unknown",
         date[1] if date else "",
         next((line.partition(":")[2].strip() for line in lines[:12] if line.startswith("Description")), ""),
         tuple(name.strip() for name in head.partition("linked with")[2].split(";")[1:]),

@@ -31,6 +31,7 @@ _UNIT = re.compile(r"[^\s,]{1,10}")
 _INDEX = re.compile(r"internal DOF index = (DOF_\w+(?:\([^)]*\))?)")
 _BLADE = re.compile(r"\bblade\s*(\d+)|DOF_B[FE]\((\d+)\s*,", re.IGNORECASE)
 _BLADE_NUMBER = re.compile(r"(\bblade\s*)\d+|(DOF_B[FE]\()\d+(?=\s*,)", re.IGNORECASE)
+_STRUCTURAL_CONTROL = re.compile(r"(.* StC \d+ )local displacement state (d?)([XYZ])(?:/dt)?\s+(\S+)")
 _VELOCITY = re.compile(r"\bvelocity\b")
 _NODE = re.compile(r"\bnode (\d+)")
 _ORDER = re.compile(r"\belement order = (\d+)")
@@ -59,8 +60,9 @@ _FAMILIES = (
     (re.compile(r"rotational displacement in X"), "edgewise"),
     (re.compile(r"rotational displacement in Y"), "flapwise"),
     (re.compile(r"rotational displacement in Z"), "torsion"),
-    (re.compile(r"\bDBEMT\b"), "dynamic inflow"),
-    (re.compile(r"\bUA\b"), "unsteady airfoil"),
+    (re.compile(r"\bDBEMT\b|\bvind\b"), "dynamic inflow"),
+    (re.compile(r"\bUA\b|^x\d blade\b"), "unsteady airfoil"),
+    (re.compile(r"Blade \d+ StC (.+)"), "blade StC {}"),
     (re.compile(r"ExctnPtfm"), "wave excitation"),
     (re.compile(r"RdtnPtfm"), "wave radiation"),
     (re.compile(r"C(?:raig-)?B(?:ampton)? mode (\d+)"), "substructure {}"),
@@ -154,6 +156,8 @@ def parse(text: str, rotating: bool, order: int | None, value: float) -> State:
         unit = ""
     rate = RATE in name
     name = name.replace(RATE, "")
+    if damper := _STRUCTURAL_CONTROL.fullmatch(name):
+        name, rate, unit = f"{damper[1]}displacement {damper[3]}", bool(damper[2]), damper[4]
     if not rate and _VELOCITY.search(name) and module in ("SrvD", "MD"):
         rate, name = True, _VELOCITY.sub("displacement", name)
     blade = int(instance) if module == "BD" and instance else None

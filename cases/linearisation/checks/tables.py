@@ -180,11 +180,18 @@ def completeness(each: AzimuthSet) -> Iterator[Finding]:
         )
 
 
+def _switched_off(each: AzimuthSet, pair: tuple[int, int]) -> bool:
+    """Whether a motion of no structure has no equation at all, as the idle directions of a structural control."""
+    at = list(pair)
+    return each.states[pair[0]].module not in STRUCTURAL and not each.A[:, at].any() and not each.A[:, :, at].any()
+
+
 def kinematics(each: AzimuthSet) -> Iterator[Finding]:
     """Rows of displacements: unit vectors of their rates."""
     wrong: dict[int, int | None] = {}
+    pairs = [pair for pair in each.pairs if not _switched_off(each, pair)]
     for A in each.A:
-        for q, v in each.pairs:
+        for q, v in pairs:
             unit = np.zeros(len(A))
             unit[v] = 1.0
             if np.abs(A[q] - unit).max() > 1e-3:

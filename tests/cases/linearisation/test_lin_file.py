@@ -2,6 +2,7 @@
 
 import gzip
 import random
+import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -55,6 +56,24 @@ def test_what_is_written_is_read() -> None:
             "ED Platform pitch tilt rotation DOF (internal DOF index = DOF_P), rad",
             ("ED", "platform pitch", "rad", False, None),
         ),
+        # descriptions of r-test's StC_test_OC4Semi_Linear_Nac and Fake5MW_AeroLin_B1_UA4_DBEMT3, and of ServoDyn's source
+        (
+            "SrvD Nacelle StC 1 local displacement state dX/dt  m/s",
+            ("SrvD", "Nacelle StC 1 displacement X", "m/s", True, None),
+        ),
+        (
+            "SrvD Blade 2 StC 1 local displacement state Y  m",
+            ("SrvD", "blade StC 1 displacement Y", "m", False, 2),
+        ),
+        ("AD x4 blade 1, node 2, -", ("AD", "unsteady airfoil", "-", False, 1)),
+        (
+            "AD First time derivative of vind (axial) at blade 1, node 3, m/s/s",
+            ("AD", "dynamic inflow", "m/s/s", True, 1),
+        ),
+        (
+            "SD First time derivative of Craig-Bampton mode 2 amplitude, -/s",
+            ("SD", "substructure 2", "-/s", True, None),
+        ),
         ("Unheard-of state, furlong", ("", "Unheard-of state", "furlong", False, None)),
     ],
 )
@@ -68,6 +87,48 @@ def test_displacement_and_rate_have_one_kind() -> None:
     assert len(found.pairs) == 14
     assert all(found.states[q].kind == found.states[v].kind for q, v in found.pairs)
     assert sum(not group.rate for group in found.groups) == 3
+
+
+def test_the_layout_of_2017_is_read() -> None:
+    """FAST 8.17 wrote no derivative orders and no wind speed, and its version in parentheses."""
+    old = re.sub(r"OpenFAST,.* v3\.5\.3", "OpenFAST (v8.17.01b-dev, 18-Jan-2017), compiled", TEXT).replace(
+        " Derivative Order", ""
+    )
+    old = re.sub(r"   Wind Speed:.*\n", "", re.sub(r"( [TF]) +\d  ", r"\1  ", old))
+    assert old.count("\n") == TEXT.count("\n") - 1
+    former = lin_file(old)
+    assert (former.version, former.states[0].order) == ("v8.17.01b-dev", None)
+    assert [state.key for state in former.states] == [state.key for state in lin_file().states]
+    assert np.array_equal(former.A, lin_file().A)
+
+
+def structural_control(stiffness: float = 0.1) -> str:
+    """A structural control beside the machine: X moves by the spring, Y has no equation, as OpenFAST 3.1 to 5.0 write it."""
+    names = ("X  m", "Y  m", "dX/dt  m/s", "dY/dt  m/s")
+    n, lines = len(LIN.rows), TEXT.splitlines()
+    rows = [
+        f"{n + k + 1:11d} 0.000E+00 F 2 SrvD Nacelle StC 1 local displacement state {name}"
+        for k, name in enumerate(names)
+    ]
+    own = [[0.0, 0, 1, 0], [0.0] * 4, [-stiffness, 0, -0.01, 0], [0.0] * 4]
+    at = lines.index(next(line for line in lines if line.startswith("A:")))
+    matrix = [line + "  0.000E+00" * 4 for line in lines[at + 1 : at + 1 + n]]
+    matrix += ["  0.000E+00" * n + "".join(f"  {value:.3E}" for value in row) for row in own]
+    table = lines.index("Order of continuous states:") + 3 + n
+    head = [line.replace(f"continuous states: {n:10d}", f"continuous states: {n + 4:10d}") for line in lines[:table]]
+    return "\n".join([*head, *rows, "", f"A: {n + 4} x {n + 4}", *matrix, ""])
+
+
+def test_idle_directions_of_a_structural_control_are_no_defect() -> None:
+    judged = judge_set(azimuth_set("case", [lin_file(structural_control())]))
+    assert "kinematic rows" not in {finding.name for finding in judged.findings}
+    assert len(judged.each.pairs) == 16
+    control = next(mode for mode in judged.modes if mode.name == "Nacelle StC 1 displacement X")
+    assert control.frequency == pytest.approx(np.sqrt(0.1) / (2 * np.pi), rel=1e-9)
+    # a row that is zero while its column is not is still a defect
+    broken = structural_control().replace("  0.000E+00  0.000E+00  1.000E+00  0.000E+00\n", "  0.000E+00" * 4 + "\n")
+    judged = judge_set(azimuth_set("case", [lin_file(broken)]))
+    assert "kinematic rows" in {finding.name for finding in judged.findings}
 
 
 def test_a_compressed_file_is_read(tmp_path: Path) -> None:
