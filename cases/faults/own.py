@@ -116,9 +116,11 @@ def judged(control: Control, right: Sequence[Cell], wrong: Sequence[Cell]) -> Co
         found = tuple(f"{c.case}, {c.code}, {c.name or 'no answer'}, {c.omega:g} rad/s: fail" for c in bad)
         return replace(control, detected_by=found, change=max(changes, key=abs, default=None))
     pairs = [(before[_key(c)], c) for c in wrong if _key(c) in before]
-    moved = [abs(b.reference / a.reference - 1.0) for a, b in pairs if a.reference and b.reference]
+    both = [both for a, b in pairs for both in ((a.reference, b.reference), (a.value, b.value))]
+    moved = [abs(y / x - 1.0) for x, y in both if x and y]
+    lost = any(a.value is not None and b.value is None for a, b in pairs)
     target = min((c.target for c in wrong), default=0.0)
-    if moved and max(moved) <= target:
+    if moved and not lost and max(moved) <= target:
         size = f" by more than {unsigned(max(moved))}" if max(moved) else ""
         return replace(control, without_effect=f"changes no compared frequency{size}")
     return control

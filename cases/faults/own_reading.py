@@ -9,6 +9,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade
 from ...core.space.inertia import transformed
 from ...core.space.spatial import pose
 from ..diagnosis import blade_errors as errors
+from ..input.readers import BladeFile
 from ..judge.results import Control
 from ..plan.blade import BladeSubject
 from ..solve import properties
@@ -71,21 +72,24 @@ READER = (
 
 
 def run(subject: BladeSubject) -> list[Control]:
-    """Run the mistakes of readers on the blade's file: the second reading must differ; empty for a blade without a file."""
+    """Run the mistakes of readers on the blade's file; empty for a blade without a file."""
     file = subject.variant.file
-    if file is None:
-        return []
-    right, _ = properties.of_reading(subject.name, file, file.blade)
+    return [] if file is None else of_file(subject.name, max(subject.points), file)
+
+
+def of_file(case: str, omega: float, file: BladeFile) -> list[Control]:
+    """Run the mistakes of readers on a blade's file: the second reading must differ."""
+    right, _ = properties.of_reading(case, file, file.blade)
     out = []
     for fault in READER:
-        control = Control(fault.name, "reader", fault.what, "", subject.name, max(subject.points), ())
+        control = Control(fault.name, "reader", fault.what, "", case, omega, ())
         if absent := [row.reason for row in right if row.verdict == "not run"]:
             out.append(replace(control, needs=absent[0]))
             continue
         try:
             wrong = fault.alter(file.blade)
         except ValueError as error:
-            out.append(replace(control, detected_by=(f"{subject.name}, refused: {error}",)))
+            out.append(replace(control, detected_by=(f"{case}, refused: {error}",)))
             continue
         if _equal(wrong, file.blade):
             out.append(replace(control, without_effect="changes no property of this blade"))
@@ -93,12 +97,10 @@ def run(subject: BladeSubject) -> list[Control]:
         if fault.part and fault.part not in {row.part for row in right}:
             out.append(replace(control, needs=f"a file that states the {fault.part}"))
             continue
-        rows, _ = properties.of_reading(subject.name, replace(file, blade=wrong), wrong)
+        rows, _ = properties.of_reading(case, replace(file, blade=wrong), wrong)
         known = {row.part for row in right if row.verdict == "fail"}
         found = [row for row in rows if row.verdict == "fail" and row.part not in known]
-        out.append(
-            replace(control, detected_by=tuple(f"{subject.name}, second reading, {row.part}: fail" for row in found))
-        )
+        out.append(replace(control, detected_by=tuple(f"{case}, second reading, {row.part}: fail" for row in found)))
     return out
 
 

@@ -16,7 +16,8 @@ from ...references.protocol.turbines import TurbineModes
 from ..solve import turbine as solving
 from .seeding import Fault, Seam, Trial
 
-HEIGHT, OVERHANG, TILT, CONE = 2.0, -7.0, np.radians(-15.0), np.radians(-10.0)
+SHAFT = shaft_pose(2.0, -7.0, np.radians(-15.0))
+CONE = np.radians(-10.0)
 
 
 def _exaggerated(turbine: Turbine) -> Turbine:
@@ -26,7 +27,7 @@ def _exaggerated(turbine: Turbine) -> Turbine:
     return replace(
         turbine,
         nacelle=nacelle,
-        shaft=shaft_pose(HEIGHT, OVERHANG, TILT),
+        shaft=SHAFT,
         blade=replace(turbine.blade, precone=CONE),
         yaw=2e9,
         drivetrain=replace(turbine.drivetrain, stiffness=2e8),
@@ -71,7 +72,31 @@ def _about_top(turbine: Turbine) -> Turbine:
     return replace(turbine, nacelle=nacelle)
 
 
-def _ratio(turbine: Turbine) -> Turbine:
+def shaft_of(turbine: Turbine) -> tuple[float, float, float]:
+    """Height, overhang, m, and tilt, rad, of ``shaft_pose``."""
+    rise, downwind = float(turbine.shaft[0, 2]), float(turbine.shaft[2, 2])
+    overhang = float(turbine.shaft[2, 3]) / downwind
+    return float(turbine.shaft[0, 3]) - overhang * rise, overhang, float(np.arctan2(rise, downwind))
+
+
+def with_shaft(turbine: Turbine, height: float, overhang: float, tilt: float) -> Turbine:
+    """The turbine with another shaft."""
+    return replace(turbine, shaft=shaft_pose(height, overhang, tilt))
+
+
+def other_tilt(turbine: Turbine) -> Turbine:
+    """The tilt with the other sign."""
+    height, overhang, tilt = shaft_of(turbine)
+    return with_shaft(turbine, height, overhang, -tilt)
+
+
+def other_cone(turbine: Turbine) -> Turbine:
+    """The precone with the other sign."""
+    return replace(turbine, blade=replace(turbine.blade, precone=-turbine.blade.precone))
+
+
+def plain_ratio(turbine: Turbine) -> Turbine:
+    """The generator's inertia behind the gear ratio, not squared."""
     drive = turbine.drivetrain
     return replace(turbine, drivetrain=replace(drive, generator=drive.generator / drive.gear_ratio))
 
@@ -110,14 +135,12 @@ FAULTS = (
              _projected(_frozen)),
     _turbine("transformation", "multi-blade coordinates lack their gyroscopic term", "tens of %",
              _projected(_not_gyroscopic)),
-    _turbine("tilt", "the tilt of the shaft has the other sign", "percent",
-             _assembled(lambda t: replace(t, shaft=shaft_pose(HEIGHT, OVERHANG, -TILT)))),
-    _turbine("precone", "the blades are coned to the other side", "percent",
-             _assembled(lambda t: replace(t, blade=replace(t.blade, precone=-t.blade.precone)))),
+    _turbine("tilt", "the tilt of the shaft has the other sign", "percent", _assembled(other_tilt)),
+    _turbine("precone", "the blades are coned to the other side", "percent", _assembled(other_cone)),
     _turbine("nacelle", "the nacelle's inertia about its mass centre is taken for that about the tower's top", "percent",
              _assembled(_about_top)),
     _turbine("gear ratio", "the generator's inertia is multiplied by the ratio instead of its square", "tens of %",
-             _assembled(_ratio)),
+             _assembled(plain_ratio)),
     _turbine("blades backwards", "blades are numbered against the rotation", "whirls exchanged",
              _answered(_backwards), "adapter"),
     _turbine("rotor at rest", "the rotor's speed does not reach the code", "tens of %",

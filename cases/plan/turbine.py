@@ -15,6 +15,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.turbine.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
+from .. import data
 from ..input import readers
 from ..input.readers.source import Mount, Source
 from ..input.turbine_cases import TurbineCase
@@ -68,6 +69,16 @@ class TurbineSubject:
     groups: int = 1
     time_limit: float = 300.0
     mount: Mount = field(default_factory=Mount)
+
+    @property
+    def users(self) -> bool:
+        """Whether the turbine does not come with the package."""
+        return Path(data.__file__ or "").parent not in Path(self.path).parents
+
+    @property
+    def read_twice(self) -> bool:
+        """Whether there is a second reader of its file."""
+        return Path(self.path).suffix.lower() == ".fst"
 
     @property
     def cells(self) -> int:
@@ -145,7 +156,7 @@ class TurbineSubject:
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``; a second reading of OpenFAST's files."""
         path = Path(self.path)
-        if path.suffix.lower() != ".fst":
+        if not self.read_twice:
             return NOT_CHECKED
         blade = readers.reading(path, self.mount)
         file = readers.BladeFile(path, blade.blade, blade.source, self.mount)

@@ -13,7 +13,7 @@ from pathlib import Path
 from ...references.protocol import launch, registry, store
 from ...references.protocol.description import Description, describe
 from ...references.protocol.store import Store
-from ..faults import own, own_reading, own_uncertainty, table
+from ..faults import own, own_reading, own_turbine, own_uncertainty, table
 from ..input.writing import writable
 from ..judge.results import Control, Planned, Run, Setting
 from ..plan import linearised, names, user_results
@@ -181,7 +181,11 @@ def _solved(
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
     users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
     on_blades = own.chosen(plan.faults) if users_blades else ()
-    elsewhere = tuple(name for name in plan.faults if name not in on_blades)
+    turbines = [subject for subject in plan.subjects if isinstance(subject, TurbineSubject) and subject.users]
+    on_turbines = own_turbine.chosen(plan.faults) if turbines else ()
+    # faults of a blade say nothing of a run on turbines alone
+    covered = {*on_blades, *on_turbines, *(table.FAST if turbines and len(turbines) == len(plan.subjects) else ())}
+    elsewhere = tuple(name for name in plan.faults if name not in covered)
     shares = _shares(elsewhere, request.execution.workers or SHARES)
     tried: list[Future[list[Control]]] = []
 
@@ -212,6 +216,14 @@ def _solved(
             trials.submit(own.run, subject, own.witnesses(run.cells, subject, plan.codes), on_blades, users is not None)
             for subject in (users_blades if on_blades else [])
         ]
+        on_own += [
+            trials.submit(
+                own_turbine.run, subject, own.witnesses(run.cells, subject, plan.codes), on_turbines, users is not None
+            )
+            for subject in (turbines if on_turbines else [])
+        ]
+        if on_turbines == own_turbine.NAMES:
+            on_own += [trials.submit(own_turbine.reading, subject) for subject in turbines]
         for others in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
             on_own += [trials.submit(others, subject) for subject in users_blades]
         controls = {control.control: control for future in tried for control in future.result()}

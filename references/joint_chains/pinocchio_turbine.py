@@ -4,12 +4,15 @@ Tower and blades are divided at equal distances. The body at a node is what lies
 is a joint with the element's whole compliance at its outer end, ``∫ Gᵀ c G ds`` with the compliance c of the sections and the
 wrench G in them. This is a lumped model of second order. Nothing of core's discretisation is used.
 
-Pinocchio computes inertia forces and their derivatives for the machine without blades and with one blade, at the azimuth of
-each blade. Inertia forces are sums over bodies, so these add up to the machine with all blades, while the workspace, which has
-arrays of n³ numbers, is that of one blade. Fourier coordinates of the blades remove the azimuth (``matrices.rotating``).
+Pinocchio computes inertia forces and their derivatives for the machine without blades, and for one blade on a hub with six
+coordinates, at the azimuth of each blade. Inertia forces are sums over bodies, so these add up to the machine with all blades,
+while the workspace, which has arrays of n³ numbers, is that of one blade. The tower moves the hub by its Jacobian; the change
+of the Jacobian acts with the wrench of all blades on the hub, which is zero. Fourier coordinates of the blades remove the
+azimuth (``matrices.rotating``).
 """
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -50,9 +53,9 @@ class PinocchioTurbine(TurbineAdapter):
         eigensolver="the adapters' own, in Fourier coordinates of the blades",
     )
     effects = ALL_EFFECTS
-    levels = (10, 15, 22)
+    levels = (20, 30, 40)
     order = 2
-    finest = 32
+    finest = 56
     hint = extra("codes")
     distribution = "pin"
 
@@ -69,24 +72,25 @@ class PinocchioTurbine(TurbineAdapter):
         tree = turbine_tree.build(turbine, chain(turbine.tower, elements), chain(turbine.blade, elements))
         base = np.arange(tree.hub + 1)
         bare = _Links(tree, base, tree.bodies)
-        single = _Links(tree, np.append(base, tree.blades[0]), tree.bodies)
         q = np.zeros(len(tree.strain))
         q[tree.tower], weight = _standing(tree)
+        held = _on_hub(tree, q)
+        single = _Links(held, np.arange(len(held.strain)), held.bodies)
         q[tree.blades] = at_blade = _steady(tree, single, omega)
+        first = len(held.strain) - len(at_blade)
         own = np.ix_(base, base)
+        moved = _by_tower(tree, q, first + len(at_blade))
 
         def at(psi: float) -> tuple[Array, Array, Array]:
             out = [np.zeros((len(q), len(q))) for _ in range(3)]
-            whole = bare.linearized(q[base], omega, psi)
-            for total, part in zip(out, whole, strict=True):
+            for total, part in zip(out, bare.linearized(q[base], omega, psi), strict=True):
                 total[own] += part
             for k, joints in enumerate(tree.blades):
                 index = np.append(base, joints)
                 azimuth = psi + 2.0 * np.pi * k / turbine.blades
-                one = single.linearized(np.append(q[base], at_blade), omega, azimuth)
-                for total, part, less in zip(out, one, whole, strict=True):
-                    total[np.ix_(index, index)] += part
-                    total[own] -= less
+                one = single.linearized(np.append(np.zeros(first), at_blade), omega, azimuth)
+                for total, part in zip(out, one, strict=True):
+                    total[np.ix_(index, index)] += moved.T @ part @ moved
             M, C, K = out
             K = K + tree.stiffness
             K[np.ix_(tree.tower, tree.tower)] += weight
@@ -232,6 +236,33 @@ def _standing(tree: TurbineTree) -> tuple[Array, Array]:
         if np.abs(step).max() < 1e-13:
             return q[t], loaded.weight(q)[1][np.ix_(t, t)]
     raise CodeError("the tower finds no balance under the weight that it carries: check its stiffness")
+
+
+def _on_hub(tree: TurbineTree, q: Array) -> TurbineTree:
+    """The tree of one blade on its hub, which moves in the ground's axes with six coordinates; its bodies are the blade's."""
+    place = turbine_motion.placed(tree, q)
+    joints, angles = tree.blades[0], np.arange(tree.spin, tree.hub + 1)
+    still, one = np.zeros((5, 3)), np.broadcast_to(np.eye(3), (6, 3, 3))
+    count = 6 + len(angles) + len(joints)
+    return replace(
+        tree,
+        strain=np.concatenate([np.arange(6), tree.strain[angles], tree.strain[joints]]),
+        parent=np.arange(-1, count - 1),
+        offset=np.concatenate([place.origin[tree.spin][None], still, 0.0 * tree.offset[angles], tree.offset[joints]]),
+        axes=np.concatenate([one, place.axes[tree.spin][None], tree.axes[angles[1:]], tree.axes[joints]]),
+        bodies=(*[NOTHING] * (6 + len(angles)), *(tree.bodies[k] for k in joints)),
+        spin=6,
+        hub=5 + len(angles),
+    )
+
+
+def _by_tower(tree: TurbineTree, q: Array, count: int) -> Array:
+    """(count, n) rates of the joints of ``_on_hub`` due to those of tower, shaft and blade."""
+    t = tree.spin
+    out = np.zeros((count, t + count - 6))
+    out[:6, :t] = turbine_motion.jacobian(tree, turbine_motion.placed(tree, q), t, np.zeros(3))[:, :t]
+    out[6:, t:] = np.eye(count - 6)
+    return out
 
 
 def _steady(tree: TurbineTree, single: _Links, omega: float) -> Array:

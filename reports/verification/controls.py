@@ -19,7 +19,7 @@ def headline(run: Run) -> str:
     silent = sum(bool(c.without_effect) for c in tried)
     rest = f"; {left} were not run, because a code is missing" if left else ""
     count = len(tried) - silent
-    rest += f"; {silent} have no effect on this blade" if silent else ""
+    rest += f"; {silent} have no effect here" if silent else ""
     return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{rest}."
 
 
