@@ -49,7 +49,7 @@ class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
     I_z: Annotated[float, _positive("second moment of area about z, resisting edgewise motion, m⁴")]
     G: Annotated[float, _positive("shear modulus, Pa; without G and J the beam is rigid in torsion")] | None = None
     J: Annotated[float, _positive("torsion constant, m⁴")] | None = None
-    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="hub centre to root on the coned axis, m")] = 0.0
     rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True
 
     def blade(self, name: str, folder: Path) -> Blade:
@@ -79,7 +79,7 @@ class Dimensionless(Mounted, frozen=True, tag_field="kind", tag="dimensionless")
     """
 
     slenderness: Annotated[float, _positive("α = √(A L² / I), dimensionless")]
-    hub_ratio: Annotated[float, Meta(ge=0, description="δ, hub radius over length, dimensionless")] = 0.0
+    hub_ratio: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="δ, hub radius over length")] = 0.0
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; ``folder`` is not used."""
@@ -101,7 +101,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
 
     file: Annotated[str, Meta(description="name of the CSV file; columns as in Stations.COLUMNS")]
     length: Annotated[float, Meta(gt=0, le=MAX_LENGTH, description="from root to tip, m")]
-    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="hub centre to root on the coned axis, m")] = 0.0
     bending_factor: Annotated[float, _positive("multiplies both bending stiffnesses of the table, dimensionless")] = 1.0
     mass_factor: Annotated[float, _positive("multiplies masses and moments of inertia of the table, dimensionless")] = (
         1.0

@@ -182,11 +182,14 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
     if not positive.any() or not np.isfinite(mu).all():
         raise EigensolverError("Lanczos found no mode: the stiffness is nearly singular; check units")
     if error[positive].max() > 1e-6:
-        lowest, highest = 1.0 / mu.max(), 1.0 / mu[positive].min()
+        unresolved = 1.0 / mu[positive & (error > 1e-6)]
+        lowest, highest = unresolved.min(), unresolved.max()
         if highest < (1.0 + _CLUSTER) * lowest:
+            below = int((1.0 / mu[positive] < lowest).sum())
+            request = f", or request at most {below} mode{'s' * (below > 1)}" if below else ""
             raise EigensolverError(
                 f"more modes than can be told apart lie between {lowest:.6g} and {highest:.6g} rad/s, as they do without "
-                "torsional or bending stiffness: check GJ and EI"
+                f"torsional or bending stiffness: check GJ and EI{request}"
             )
         raise EigensolverError(
             f"{count} modes did not converge in a basis of {size} vectors: request another number of modes"

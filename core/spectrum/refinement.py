@@ -35,7 +35,7 @@ MAX_ELEMENTS = 6400
 
 _FEWEST = 8  # elements of the coarsest mesh
 _COMPARED = 1e-6  # accuracy of the refined frequencies with which a given mesh is compared
-_TRIES = 5  # halvings before instability is reported: an under-resolved cable appears unstable
+_TRIES = 6  # halvings before instability is reported: an under-resolved cable appears unstable
 
 
 class AccuracyWarning(UserWarning):

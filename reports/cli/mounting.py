@@ -28,7 +28,7 @@ class Mounting:
     length
         Length from root to tip in m; overrides the files.
     hub_radius
-        Distance from the rotor axis to the root in m; overrides the files.
+        Distance from the hub's centre to the root in m, along the coned axis of the blade; overrides the files.
     precone
         Precone in degrees, positive downwind; overrides the files.
     pitch

@@ -60,7 +60,7 @@ def read(
             ``"park-blade/windpact"``.
         main: the main file that defines how the blade is mounted on the hub.
         length: from root to tip, m, if no file states it.
-        hub_radius: from the rotor axis to the root, m; required if no file states it.
+        hub_radius: from the hub's centre to the root along the coned axis, m; required if no file states it.
         precone: degrees, positive downwind.
         pitch: degrees; its sign is that of ``pitch_convention``.
         pitch_convention: ``southwell``: positive with the leading edge downwind; ``openfast``: upwind, as BlPitch.

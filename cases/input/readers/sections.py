@@ -143,7 +143,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
     rigid: Annotated[
         tuple[Literal["axial", "shear_y", "shear_z", "torsion"], ...], Meta(description="rigid strains")
     ] = ()
-    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor's axis to the root, m")] = 0.0
+    hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="hub centre to root on the coned axis, m")] = 0.0
 
     def blade(self, name: str, folder: Path) -> Blade:
         """The blade; ``folder`` is not used.
@@ -190,7 +190,8 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     ) = None
     hub_radius: (
         Annotated[
-            float, Meta(ge=0, le=MAX_LENGTH, description="from the rotor axis to the root, m, if no file states it")
+            float,
+            Meta(ge=0, le=MAX_LENGTH, description="hub centre to root on the coned axis, m, if no file states it"),
         ]
         | None
     ) = None

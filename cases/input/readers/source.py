@@ -117,7 +117,7 @@ class Mount:
     Attributes:
         main: main input file with these data (ElastoDyn's, also for a BeamDyn blade; a HAWC2 htc).
         length: arc length from root to tip, m.
-        hub_radius: from the rotor's axis to the root, m.
+        hub_radius: from the hub's centre to the root, m, along the coned axis of the blade.
         precone: rad, towards +z (downwind).
         pitch: rad, positive like twist in ``core.blade`` (y towards z: the leading edge downwind).
         subset: set and subset of a HAWC2 structural file with several.

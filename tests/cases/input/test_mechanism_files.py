@@ -183,6 +183,11 @@ BAD = [
     ("mass = 2", "mass = -2", ["bodies.leg.mass: -2", ">= 0"]),
     ("mass = 2", "mass = nan", ["bodies.leg.mass: nan", "not a finite number"]),
     ("moments = 0.5", "moments = [0.5, 1.0]", ["bodies.top.moments: [0.5, 1.0]", "give 3 numbers or 3 rows of 3"]),
+    (
+        "moments = 0.5",
+        "moments = [5.0, 11.0, []]",
+        ["bodies.top.moments: [5.0, 11.0, []]", "give 3 numbers or 3 rows of 3"],
+    ),
     ("moments = 0.5", "moments = [0.5, 1.0, []]", ["bodies.top.moments: [0.5, 1.0, []]: give 3 numbers"]),
     ("moments = 0.5", "moments = [[], [], []]", ["bodies.top.moments: [[], [], []]: give 3 numbers"]),
     ("moments = 0.5", "moments = [0.1, 0.2, 5.0]", ["bodies.top.moments: 5 is more than 0.1 and 0.2 together"]),

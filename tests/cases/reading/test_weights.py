@@ -270,6 +270,21 @@ def test_fingerprints_cross_the_process_unchanged() -> None:
     assert declined.kind == "unsupported"
 
 
+def test_a_flexibility_that_converges_slowly_at_a_thin_tip_is_not_called_wrong() -> None:
+    """That about y of the IEA-15 blade is off by 12.1 and 8.2 % with 50 and 75 elements: EI drops to 1/187 in the last 6 m."""
+    exact = wt.of_core(BLADES["tapered"], 64)
+    assert exact.flexibility is not None
+    models = [
+        replace(
+            exact, flexibility=tuple((1.0 - off) * v for v in exact.flexibility), mass=1.01 * exact.mass, elements=n
+        )
+        for n, off in ((50, 0.121), (75, 0.0821))
+    ]
+    verdicts = {w.name: w.verdict for w in wt.weights(BLADES["tapered"], wt.stations_of(BLADES["tapered"]), models)}
+    assert verdicts["tip flexibility about y"] == "inconclusive"
+    assert verdicts["mass"] == "fail"
+
+
 @pytest.mark.parametrize(
     ("difference", "finest", "change", "verdict"),
     [

@@ -12,7 +12,7 @@ from southwell.cases.input.library import load
 from southwell.cases.input.schema import Compare
 from southwell.cases.solve import core_solver
 from southwell.core import solve
-from southwell.core.blade import Blade, uniform_blade
+from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
 from southwell.core.spectrum import accuracy, grading
@@ -25,6 +25,16 @@ from southwell.reports.shared.units import RAD_S
 
 def cable(EI: float) -> Blade:
     return uniform_blade("cable", 10.0, 0.0, EA=1e9, GJ=1e4, EI_y=EI, EI_z=2 * EI, mass=1.0)
+
+
+@pytest.mark.slow
+def test_a_step_of_the_bending_stiffness_by_1e8_is_solved() -> None:
+    """The outer half is a cable, for which 320 elements are too few; 3000 equal elements have these frequencies."""
+    s, EI = np.array([0.0, 5.0, 5.0001, 10.0]), np.array([1e4, 1e4, 1e-4, 1e-4])
+    mass = np.repeat(section_mass(1.0, 0.001, 0.002), 4, 0)
+    stepped = Blade("stepped", s, section_stiffness(np.full(4, 1e8), 1e4, EI, 2 * EI), mass, np.zeros(4))
+    found = solve.modes(stepped, 10.0, count=2, accuracy=1e-3).frequencies
+    np.testing.assert_allclose(found, [6.201082, 11.192977], rtol=2e-6)
 
 
 def random_blade(seed: int) -> tuple[Blade, float]:

@@ -107,3 +107,11 @@ def test_modes_too_close_to_be_told_apart_are_refused_with_their_frequency() -> 
     soft = uniform_blade("b", 10.0, 1.0, EA=1e8, GJ=1e-6, EI_y=1e5, EI_z=3e5, mass=5.0, I_y=0.01, I_z=0.02)
     with pytest.raises(lanczos.EigensolverError, match=r"between 5\.77\d+ and 5\.77\d+ rad/s.*check GJ and EI"):
         solve.modes(soft, 10.0, count=6)
+
+
+def test_modes_below_those_that_cannot_be_told_apart_are_offered() -> None:
+    """One mode, of 5.05 rad/s, is below the torsion modes of 5.77 rad/s: it can be had, and its number is stated."""
+    soft = uniform_blade("b", 10.0, 0.0, EA=1e8, GJ=1e-6, EI_y=1e4, EI_z=1e4, mass=1.0, I_y=0.001, I_z=0.002)
+    with pytest.raises(lanczos.EigensolverError, match=r"between 5\.77\d+ and .*, or request at most 1 mode$"):
+        solve.modes(soft, 10.0, count=4)
+    assert solve.modes(soft, 10.0, count=1).frequencies[0] < 5.77
