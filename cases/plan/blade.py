@@ -95,7 +95,7 @@ class BladeSubject:
             tasks.append(Invariances(self.name, self.blade, max(self.points), self.cells))
         return PropertyChecks(rows, tasks)
 
-    def error_budget(self) -> Callable[[], list[BudgetEntry]]:
+    def error_budget(self) -> Callable[[], list[BudgetEntry]] | None:
         """See ``Subject``."""
         return partial(error_budget.solve, self.case, self.variant)
 

@@ -17,6 +17,10 @@ from ..judge.results import Verdict
 from ..solve.works import References
 
 
+class ColumnError(Exception):
+    """The work of a column raised an exception, the cause, that ends the run instead of costing the column's cells."""
+
+
 @dataclass(frozen=True)
 class Column:
     """A column of one blade.

@@ -3,30 +3,34 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from importlib.metadata import version
+from typing import Any
 
 import numpy as np
 from msgspec import UNSET
 
 from ...core import multibody as mb
+from ...core.effects import ALL_EFFECTS
 from ...core.mechanism.description import at_rate
 from ...references.protocol.description import Description
+from ...references.protocol.interface import Independence
 from ...references.protocol.process import Limits
 from ...references.theories import blade_formulae
 from ..input.errors import CaseError, nearest
 from ..input.mechanism_schema import Compare
 from ..input.mechanisms import Described
 from ..input.schema import rad_s
+from ..judge.cells import Head, Rows
 from ..judge.results import Setting
-from ..solve.mechanism import QUANTITIES, references
+from ..solve.mechanism import QUANTITIES, asked, compared, formula, references
 from ..solve.reference import References
-from . import mechanism_columns
-from .column import Column
-from .subject import NOT_CHECKED, PropertyChecks
+from .column import Column, absent_work, failing_work, not_installed
+from .subject import NotABlade
 from .user_results import UserResults
 
 
 @dataclass(frozen=True)
-class MechanismSubject:
+class MechanismSubject(NotABlade):
     """A mechanism with its speeds; see ``Subject``.
 
     Attributes:
@@ -59,16 +63,6 @@ class MechanismSubject:
         """See ``Subject``."""
         return self.compare.time_limit
 
-    @property
-    def tables(self) -> tuple[str, ...]:
-        """See ``Subject``."""
-        return ()
-
-    @property
-    def blade(self) -> None:
-        """See ``Subject``."""
-        return None
-
     def setting(self) -> Setting:
         """See ``Subject``."""
         text, compare = self.described.text, self.compare
@@ -97,19 +91,11 @@ class MechanismSubject:
 
     def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
         """Results of other programs are for blades and add no column."""
-        return mechanism_columns.columns(self.described, self.compare, codes, limits)
+        return _columns(self.described, self.compare, codes, limits)
 
     def references(self, columns: Sequence[Column]) -> Callable[[], References]:
         """See ``Subject``."""
         return partial(references, self.described, self.points, self.compare.modes)
-
-    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
-        """Mechanisms are given by bodies, not by stations: there is nothing to integrate."""
-        return NOT_CHECKED
-
-    def error_budget(self) -> None:
-        """See ``Subject``."""
-        return None
 
 
 def subject(described: Described) -> MechanismSubject:
@@ -134,3 +120,41 @@ def subject(described: Described) -> MechanismSubject:
         advice = nearest(text.closed_form.formula, blade_formulae.FORMULAE)
         raise CaseError(f"{path}: closed_form.formula: {text.closed_form.formula!r}: no such formula: {advice}")
     return MechanismSubject(described, text.compare, tuple(rad_s(text.speeds, path).tolist()))
+
+
+_BY_HAND = Independence(
+    engine="closed form",
+    theory="second-order Lagrangian by hand",
+    rotation="second-order Lagrangian by hand",
+    sections="the case's closed_form.parameters",
+    eigensolver="the adapters' own, with damping",
+)
+
+
+def _columns(described: Described, compare: Compare, codes: Sequence[Description], limits: Limits) -> list[Column]:
+    """A column for each code and for the closed form; ``limits`` apply to each solution by a foreign code.
+
+    Codes that accept only blades have no column, unless there are no other codes.
+    """
+    name, target = described.text.name, compare.target
+    out = []
+    for code in [code for code in codes if code.mechanisms] or codes:
+        head = Head(name, code.name, code.version or "", "same discretisation", target, code.shares)
+        work = _work(head, described, code, limits)
+        solves = code.mechanisms and not code.failure and code.version is not None
+        out.append(Column(code.name, ALL_EFFECTS, head, work, code.independence, solves=solves))
+    if form := described.text.closed_form:
+        head = Head(name, "closed form", f"southwell {version('southwell')}", "same discretisation", target, "nothing")
+        work = partial(compared, head, described, partial(formula, form))
+        out.append(Column(head.code, ALL_EFFECTS, head, work, _BY_HAND))
+    return out
+
+
+def _work(head: Head, described: Described, code: Description, limits: Limits) -> Callable[[Any], Rows]:
+    if code.failure:
+        return failing_work(head, code.failure)
+    if not code.mechanisms:
+        return absent_work(head, "not applicable", "the code takes blades, not mechanisms")
+    if code.version is None:
+        return failing_work(head, not_installed(code))
+    return partial(compared, head, described, partial(asked, code.asked, code.version, limits))

@@ -21,7 +21,8 @@ class Execution:
     """Where and how a run is executed, which its results do not depend on.
 
     Attributes:
-        workers: number of processes, or of Slurm's workers; None for the workers of a running scheduler.
+        workers: number of processes, or of Slurm's workers; None for the workers of a running scheduler; 0 to run
+            everything in this thread.
         scheduler: see ``cases.run.executors``.
         threads: run in threads of this process; seeded faults then follow, in this thread.
         out: folder for results and, until they are complete, for the answers of the run; None: none are kept.

@@ -1,7 +1,7 @@
 """What is verified: a subject says where it is asked, how its answers are compared, and who answers.
 
-A blade of a case and a mechanism are subjects. The run knows no more of them than this page: it solves the references of every
-subject, then its columns.
+A blade of a case, a mechanism and a turbine are subjects. The run knows no more of them than this page: it solves the
+references of every subject, then its columns.
 """
 
 from collections.abc import Callable, Collection, Sequence
@@ -91,6 +91,21 @@ class Subject(Protocol):
     def error_budget(self) -> Callable[[], list[BudgetEntry]] | None:
         """The task that splits core's error into its causes; None if there is none for this kind of subject."""
         ...
+
+
+class NotABlade:
+    """What a subject has that is not a blade: no printed tables, and no properties at stations that could be checked."""
+
+    tables: tuple[str, ...] = ()
+    blade = None
+
+    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
+        """See ``Subject``."""
+        return NOT_CHECKED
+
+    def error_budget(self) -> None:
+        """See ``Subject``."""
+        return None
 
 
 def asked_about(subjects: Collection[Subject]) -> list[Blade]:

@@ -30,7 +30,7 @@ from ..solve.turbine_reading import read_again
 from . import linearised
 from .column import Column, absent_work, failing_work, not_installed
 from .settings import NOT_USED
-from .subject import NOT_CHECKED, PropertyChecks
+from .subject import NOT_CHECKED, NotABlade, PropertyChecks
 from .user_results import UserResults
 
 MODES, TARGET = 8, 1e-3
@@ -38,7 +38,7 @@ MODES, TARGET = 8, 1e-3
 
 
 @dataclass(frozen=True)
-class TurbineSubject:
+class TurbineSubject(NotABlade):
     """A turbine with its speeds; see ``Subject``.
 
     Attributes:
@@ -84,16 +84,6 @@ class TurbineSubject:
     def cells(self) -> int:
         """See ``Subject``."""
         return self.modes
-
-    @property
-    def tables(self) -> tuple[str, ...]:
-        """See ``Subject``."""
-        return ()
-
-    @property
-    def blade(self) -> None:
-        """See ``Subject``."""
-        return None
 
     def setting(self) -> Setting:
         """See ``Subject``."""
@@ -162,10 +152,6 @@ class TurbineSubject:
         file = readers.BladeFile(path, blade.blade, blade.source, self.mount)
         of_blade, _ = of_reading(self.name, file, blade.blade)
         return PropertyChecks((*read_again(self.name, self.turbine, path), *of_blade))
-
-    def error_budget(self) -> None:
-        """See ``Subject``."""
-        return None
 
 
 def of_case(case: TurbineCase) -> TurbineSubject:

@@ -49,10 +49,12 @@ class Stored(Executor):
         solves = getattr(fn, "solves", True)
         self.asked += solves
         shared = self.users if solves and storable(fn) else None
+        executor = self.executor if solves else Serial()
+        if shared is None and self.unfinished is None:
+            return executor.submit(fn, *args, **kwargs)
         key = question(fn, args, kwargs, *self.also)
         with suppress(KeyError, ValueError):  # missing or damaged
             return _done(self._get(key, shared))
-        executor = self.executor if solves else Serial()
         return _Kept(executor.submit(fn, *args, **kwargs), lambda value: self._put(key, shared, _label(fn), value))
 
     def _get(self, key: str, shared: Store | None) -> Any:

@@ -20,7 +20,7 @@ from ..diagnosis import columns as diagnosis
 from ..input.errors import CaseError
 from ..judge.cells import Rows, failing
 from ..judge.results import BudgetEntry, Cell, Diagnosed, Level, Origin, Planned, PropertyCheck, Run
-from ..plan.column import Column
+from ..plan.column import Column, ColumnError
 from ..plan.names import unique
 from ..plan.subject import NOT_CHECKED, PropertyChecks, Subject, asked_about, speeds_of_blades
 from ..plan.user_results import UserResults, check
@@ -187,7 +187,7 @@ def _answer(future: Future[Any]) -> Any:
     """The result of a task, or a failure if this package raised an error; only the cells of that task are lost."""
     try:
         return future.result()
-    except (BrokenExecutor, StoreError):
+    except (BrokenExecutor, ColumnError, StoreError):
         raise
     except CaseError as error:
         return Failure("no reference", str(error))

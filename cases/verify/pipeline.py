@@ -91,7 +91,8 @@ def verify(request: Request, observer: Observer | None = None) -> Run:
     """
     observer, execution = observer or Observer(), request.execution
     with _store(execution.fresh, observer) as users, ExitStack() as stack:
-        launch.warm_up()  # for the descriptions of codes, while the cases are read
+        if request.codes != ():
+            launch.warm_up()  # for the descriptions of codes, while the cases are read
         plan = planned(request, observer)
         if execution.out is None:
             with _pool(execution, plan, None, observer) as pool:
@@ -177,7 +178,7 @@ def _solved(
 ) -> Run:
     """The complete run. That a fault is detected is taken from the store only if no version of a code has changed."""
     state = tuple(f"{name} {version}" for name, version in sorted(plan.about.versions.items()))
-    serial = request.execution.threads
+    serial = request.execution.threads or request.execution.workers == 0
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
     users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
     on_blades = own.chosen(plan.faults) if users_blades else ()
@@ -236,6 +237,9 @@ def _solved(
 
 @contextmanager
 def _pool(execution: Execution, plan: Plan, scratch: Path | None, observer: Observer) -> Iterator[Executor]:
+    if execution.workers == 0:
+        yield Serial()
+        return
     if execution.threads:
         with ThreadPoolExecutor(execution.workers) as pool:
             yield pool

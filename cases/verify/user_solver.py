@@ -1,4 +1,4 @@
-"""A solver given as a function: its cells, judged in this process like those of any code.
+"""A solver given as a function: the only column of its blade, in a run in this thread.
 
 For tests of a user's solver, which needs neither an adapter nor a separate process.
 """
@@ -6,6 +6,7 @@ For tests of a user's solver, which needs neither an adapter nor a separate proc
 import inspect
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 import numpy as np
@@ -13,18 +14,26 @@ import numpy as np
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import STATIONS, Modes
-from ...references.protocol.process import Failure
+from ...references.protocol.description import Description
+from ...references.protocol.process import Failure, Limits
 from ...references.protocol.worker import Run as Asked
-from ..input.schema import Compare, Variant
-from ..judge.cells import Head, Rows, empty, without_reference
+from ..input.schema import Case, Compare, Variant
+from ..judge.cells import Head, Rows, joined
 from ..judge.refined import refined
-from ..judge.results import Cell
+from ..judge.results import Cell, Run
 from ..judge.spectrum import Answer, of_blade
 from ..judge.verdict import judge, percent, unsigned
+from ..plan.blade import BladeSubject
+from ..plan.column import Column, ColumnError, absent_work
+from ..plan.request import Execution, Request
+from ..plan.subject import NOT_CHECKED, PropertyChecks
+from ..plan.user_results import UserResults
 from ..solve import published_tables
-from ..solve.reference import References, felt, references
+from ..solve.reference import felt, references
 from ..solve.refinement import Refining, solve
+from ..solve.works import References, compared_with
 from .controls import SAME_MODE, Wrong
+from .pipeline import verify
 
 
 @dataclass(frozen=True)
@@ -66,43 +75,71 @@ class UserSolver:
         return len(inspect.signature(self.solve).parameters) != 2
 
 
-def rows(solver: UserSolver, variant: Variant, compare: Compare) -> Rows:
-    """Cells of a solver for one blade at all speeds of the case: against core and against printed numbers.
+@dataclass(frozen=True)
+class SolverSubject(BladeSubject):
+    """A blade with one column, that of a solver given as a function; see ``Subject``."""
 
-    Only printed numbers that core agrees with are used, with the effects of the table and with those of the solver.
+    solver: UserSolver
+
+    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+        """See ``Subject``."""
+        return [_column(self.solver, self.variant, self.case.text.compare)]
+
+    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
+        """A function is not asked which model it solves."""
+        return NOT_CHECKED
+
+    def error_budget(self) -> None:
+        """See ``Subject``."""
+        return None
+
+
+def run(solver: UserSolver, case: Case, variant: Variant) -> Run:
+    """The run of a solver for one blade of a case at all its speeds: against core and against printed numbers.
+
+    Raises:
+        ColumnError: the solver raised an exception, which is its cause.
     """
-    target = solver.target or compare.target
-    head = Head(variant.name, solver.name, "", "code", target, "nothing")
-    speeds = variant.speeds.tolist()
-    if why := solver.unsupported(variant.blade):
-        return [empty(head, omega, "not applicable", why) for omega in speeds], []
+    subject = SolverSubject(case, variant, solver)
+    return verify(Request((subject,), codes=(), faults="none", execution=Execution(workers=0)))
+
+
+def _column(solver: UserSolver, variant: Variant, compare: Compare) -> Column:
+    head = Head(variant.name, solver.name, "", "code", solver.target or compare.target, "nothing")
     effects = felt(solver.effects, variant.blade)
-    solved = references(variant.blade, speeds, compare, [effects])
-    pairs = list(zip(speeds, solved[effects], strict=True))
-    without = [without_reference(head, omega, r) for omega, r in pairs if isinstance(r, Failure)]
-    core = [(omega, r) for omega, r in pairs if not isinstance(r, Failure)]
-    if not core:
-        return without, []
+    if why := solver.unsupported(variant.blade):
+        return Column(solver.name, effects, head, absent_work(head, "not applicable", why), solves=False)
+    return Column(solver.name, effects, head, partial(_rows, head, solver, variant, compare), bundled=False)
+
+
+def _rows(head: Head, solver: UserSolver, variant: Variant, compare: Compare, core: References) -> Rows:
+    """Cells of a solver at the speeds of core's references, with those against the printed numbers that core passes."""
     finest = 4 * solver.levels[-1]
     refining = Refining(solver.levels, solver.order, finest) if solver.refines else Refining((1,), 0, 1, bracket=True)
     count = max(r.core.count for _, r in core)
-    by_speed = {omega: r.core.compared for omega, r in core}
+    speeds = [omega for omega, _ in core]
     refinements = solve(
-        lambda runs: _answers(solver, variant.blade, runs), list(by_speed), refining, count, lambda w, _: by_speed[w]
+        lambda runs: _answers(solver, variant.blade, runs), speeds, refining, count, compared_with(core)
     )
-    cells, levels = without, []
-    for (omega, reference), refinements_at in zip(core, refinements, strict=True):
-        new = refined(head, omega, reference, refinements_at, refining.order, refining.bracket)
-        cells += new[0]
-        levels += new[1]
-    return cells + _printed(cells, variant, compare, solved), levels
+    cells, levels = joined(
+        refined(head, omega, reference, at_speed, refining.order, refining.bracket)
+        for (omega, reference), at_speed in zip(core, refinements, strict=True)
+    )
+    return cells + _printed(cells, solver, variant, compare, core), levels
 
 
 def _answers(solver: UserSolver, blade: Blade, runs: Sequence[Asked]) -> list[Answer]:
-    """Answers of the solver; an invalid return value becomes a failure, an exception propagates to the user."""
+    """Answers of the solver; an invalid return value is a failure.
+
+    Raises:
+        ColumnError: the solver raised an exception, which its user must see.
+    """
     out: list[Answer] = []
     for omega, elements, count in runs:
-        answer = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
+        try:
+            answer = solver.solve(blade, omega, elements, count) if solver.refines else solver.solve(blade, omega)
+        except Exception as error:
+            raise ColumnError(solver.name) from error
         try:
             out.append(of_blade(_modes(omega, elements, *answer, exact=not solver.refines)))
         except (TypeError, ValueError) as error:
@@ -121,27 +158,29 @@ def _modes(omega: float, elements: int, frequencies: Any, shapes: Any, exact: bo
             "no modes, or a mode whose shape is zero"
         )  # neither could be distinguished from an unsupported blade
     order = np.argsort(values)
-    sure = np.zeros(len(values)) if exact else np.zeros(0)
-    return Modes(omega, values[order], shape[order], elements, uncertainty=sure)
+    uncertainty = np.zeros(len(values)) if exact else np.zeros(0)
+    return Modes(omega, values[order], shape[order], elements, uncertainty=uncertainty)
 
 
-def _printed(cells: Sequence[Cell], variant: Variant, compare: Compare, solved: References) -> list[Cell]:
-    """The solver's frequencies against the printed numbers that core, with the effects of the table, passes."""
+def _printed(
+    cells: Sequence[Cell], solver: UserSolver, variant: Variant, compare: Compare, core: References
+) -> list[Cell]:
+    """The solver's frequencies against the printed numbers that core passes with the table's and with the solver's effects."""
+    speeds = [omega for omega, _ in core]
+    solved = {felt(solver.effects, variant.blade): core}
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
         effects = felt(table.series.effects, variant.blade)
         if effects not in solved:
-            solved |= references(variant.blade, variant.speeds.tolist(), compare, [effects])
-        core = [
-            (w, r) for w, r in zip(variant.speeds.tolist(), solved[effects], strict=True) if not isinstance(r, Failure)
-        ]
+            answers = zip(speeds, references(variant.blade, speeds, compare, [effects])[effects], strict=True)
+            solved[effects] = [(omega, r) for omega, r in answers if not isinstance(r, Failure)]
         head = Head(variant.name, table.name, "", "table", compare.target, "nothing")
-        printed, _ = published_tables.rows(head, table, variant.blade, None, core)
+        printed, _ = published_tables.rows(head, table, variant.blade, None, solved[effects])
         agreed = {(c.omega, c.mode): c for c in printed if c.verdict == "pass"}
-        for ours in cells:
-            number = agreed.get((ours.omega, ours.mode))
-            if number and ours.family == number.family and _agrees(ours.reference, number):
-                out.append(_compared(ours, number, number.value or 0.0))
+        for cell in cells:
+            number = agreed.get((cell.omega, cell.mode))
+            if number and cell.family == number.family and _agrees(cell.reference, number):
+                out.append(_compared(cell, number, number.value or 0.0))
     return out
 
 
@@ -152,17 +191,17 @@ def _agrees(reference: float | None, number: Cell) -> bool:
     return judge(reference / number.value - 1.0, number.uncertainty, number.target)[0] == "pass"
 
 
-def _compared(ours: Cell, number: Cell, printed: float) -> Cell:
+def _compared(cell: Cell, number: Cell, printed: float) -> Cell:
     """One frequency against one printed number; a known difference of the frequency remains known."""
-    difference = (ours.value or 0.0) / printed - 1.0
-    unsure = None if ours.uncertainty is None else ours.uncertainty + (number.uncertainty or 0.0)
-    verdict, reason = judge(difference, unsure, max(ours.target, number.target))
-    if verdict != "pass" and ours.verdict == "known difference":
-        verdict, reason = ours.verdict, ours.reason
-    name = f"{ours.code}, {number.code}"
+    difference = (cell.value or 0.0) / printed - 1.0
+    uncertainty = None if cell.uncertainty is None else cell.uncertainty + (number.uncertainty or 0.0)
+    verdict, reason = judge(difference, uncertainty, max(cell.target, number.target))
+    if verdict != "pass" and cell.verdict == "known difference":
+        verdict, reason = cell.verdict, cell.reason
+    name = f"{cell.code}, {number.code}"
     return replace(
-        ours, code=name, role="table", reference=printed, difference=difference, uncertainty=unsure,
-        target=max(ours.target, number.target), verdict=verdict, reason=reason,
+        cell, code=name, role="table", reference=printed, difference=difference, uncertainty=uncertainty,
+        target=max(cell.target, number.target), verdict=verdict, reason=reason,
     )  # fmt: skip
 
 

@@ -13,8 +13,10 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from ...cases.input.schema import Case, Variant
-    from ...cases.judge.results import Cell
+    from ...cases.judge.results import Cell, Level, Setting
     from ...cases.verify.user_solver import UserSolver
 
 MARK, FIXTURE, PROPERTY = "southwell", "southwell_cell", "southwell"
@@ -87,9 +89,9 @@ def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen
         solver.effects  # noqa: B018  (checks the names of effects)
     except TypeError as error:
         raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
-    wanted = config.getoption("--southwell-cases")
+    names = config.getoption("--southwell-cases")
     try:
-        some = [select(n) for n in wanted.split(",")] if wanted else None
+        some = [select(n) for n in names.split(",")] if names else None
         cases = [select(n) for n in solver.cases] or some or _all()
         unique(blades(*cases), [], [])
         only = {v.name for c in some or cases for v in c.variants}
@@ -109,8 +111,8 @@ def _all() -> "list[Case]":
     """Every case whose files are present."""
     from ...cases.input import library
 
-    found, _ = library.everything()
-    return list(found.values())
+    present, _ = library.everything()
+    return list(present.values())
 
 
 @dataclass(frozen=True)
@@ -128,28 +130,30 @@ class CellUnderTest:
         (``xfail``). A blade that the solver does not support is skipped.
         """
         __tracebackhide__ = True
+        from ...cases.plan.column import ColumnError
         from ...cases.verify import user_solver
 
         chosen = self.chosen
-        cells, levels = self._once(
-            "cells", lambda: user_solver.rows(chosen.solver, chosen.variant, chosen.case.text.compare)
-        )
-        mine = [c for c in cells if c.omega == chosen.omega and c.mode in (0, chosen.mode)]
-        here = [v for v in levels if v.omega == chosen.omega and v.mode == chosen.mode]
-        self.request.node.user_properties.append((PROPERTY, _packed(chosen, mine, here)))
-        known: list[str] = []
-        for cell in mine:
+        try:
+            run = self._once("run", lambda: user_solver.run(chosen.solver, chosen.case, chosen.variant))
+        except ColumnError as error:
+            raise error.__cause__ or error from None
+        cells = [c for c in run.cells if c.omega == chosen.omega and c.mode in (0, chosen.mode)]
+        levels = [v for v in run.levels if v.omega == chosen.omega and v.mode == chosen.mode]
+        self.request.node.user_properties.append((PROPERTY, _packed(cells, levels, run.settings)))
+        explained: list[str] = []
+        for cell in cells:
             match cell.verdict:
                 case "not applicable":
                     pytest.skip(cell.reason)
                 case "known difference":
-                    known.append(cell.reason)
+                    explained.append(cell.reason)
                 case "fail" | "inconclusive":
-                    known.append(self._excuse(cell) or pytest.fail(self._message(cell), pytrace=False))
-        if known:
-            pytest.xfail("; ".join(dict.fromkeys(known)))
+                    explained.append(self._stated_cause(cell) or pytest.fail(self._message(cell), pytrace=False))
+        if explained:
+            pytest.xfail("; ".join(dict.fromkeys(explained)))
 
-    def _excuse(self, cell: "Cell") -> str:
+    def _stated_cause(self, cell: "Cell") -> str:
         """The cause of a known difference, if the mark lists one that covers it; otherwise empty."""
         from ...cases.judge.verdict import percent, unsigned
 
@@ -197,11 +201,8 @@ def southwell_cell(request: pytest.FixtureRequest, southwell_solved: dict[Any, A
     return CellUnderTest(request.param, request, southwell_solved)
 
 
-def _packed(chosen: Chosen, cells: Any, levels: Any) -> str:
+def _packed(cells: "Sequence[Cell]", levels: "Sequence[Level]", settings: "Sequence[Setting]") -> str:
     """Serialise one test's rows for the report; text can be sent from a worker process."""
     import msgspec
 
-    from ...cases.plan.settings import settings
-
-    about = [s for s in settings(chosen.case) if s.case == chosen.variant.name]
-    return msgspec.json.encode({"cells": cells, "levels": levels, "settings": about}).decode()
+    return msgspec.json.encode({"cells": cells, "levels": levels, "settings": settings}).decode()

@@ -140,29 +140,26 @@ def test_a_known_difference_is_known_as_far_as_it_is_said_to_go(quick: pytest.Py
 
 
 def test_a_function_of_blade_and_speed_alone() -> None:
-    (variant,) = library.load("wright-flapwise").variants
-    compare = library.load("wright-flapwise").text.compare
+    case = library.load("wright-flapwise")
 
     def solve(blade, omega):
         found = modes(blade, omega, 100, 12)
         return found.frequencies, found.shapes
 
-    cells, _ = user_solver.rows(UserSolver(solve), variant, compare)
-    mine = [c for c in cells if c.role == "code"]
-    assert [c.verdict for c in mine] == ["pass"] * 21
-    assert max(abs(c.difference or 1.0) for c in mine) < 1e-6
+    cells = [c for c in user_solver.run(UserSolver(solve), case, case.variants[0]).cells if c.role == "code"]
+    assert [c.verdict for c in cells] == ["pass"] * 21
+    assert max(abs(c.difference or 1.0) for c in cells) < 1e-6
 
 
 @pytest.mark.slow
 def test_printed_numbers_are_held_against_it_too() -> None:
-    (variant,) = library.load("wright-flapwise").variants
     case = library.load("wright-flapwise")
 
     def solve(blade, omega, elements, count):
         found: Modes = modes(blade, omega, elements, count)
         return found.frequencies * (1 + 2e-3), found.shapes
 
-    cells, _ = user_solver.rows(UserSolver(solve, target=5e-3), variant, case.text.compare)
+    cells = user_solver.run(UserSolver(solve, target=5e-3), case, case.variants[0]).cells
     assert {c.verdict for c in cells if c.role == "code"} == {"pass"}
     printed = [c for c in cells if c.role == "table"]
     assert len(printed) >= 15
@@ -186,6 +183,15 @@ def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, 
     done = quick.runpytest("-x")
     done.assert_outcomes(failed=1)
     assert phrase in done.stdout.str()
+
+
+def test_an_exception_of_the_solver_is_shown_as_its_own(quick: pytest.Pytester) -> None:
+    body = re.sub(r"    found.*\n.*\n", "    return 1 / omega - 1 / omega\n", OFF)
+    quick.makepyfile(body.replace("{known}", "{}"))
+    done = quick.runpytest("-x")
+    done.assert_outcomes(failed=1)
+    done.stdout.fnmatch_lines([">*return 1 / omega - 1 / omega", "*: ZeroDivisionError*"])
+    assert "ColumnError" not in done.stdout.str()
 
 
 @pytest.mark.parametrize(
