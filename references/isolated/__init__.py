@@ -1,6 +1,6 @@
 """Codes whose dependencies conflict with this package, in isolated environments: pinned, cached, called by JSON.
 
-Only a script in this folder runs there; it imports nothing but the code and NumPy.
+There ``answer.py`` runs a module of this folder, which imports nothing but the code and NumPy.
 """
 
 import json
@@ -33,7 +33,7 @@ class Environment:
         name: name of the code.
         requires: pinned requirements.
         bare: pinned packages installed without their declared dependencies; the code itself is first.
-        script: name of the script in this folder, without ``.py``, that answers one request.
+        module: name of the module in this folder that answers a request.
         libraries: names of shared libraries of the system that it loads, without ``lib``.
         packages: Debian packages that have them.
     """
@@ -41,7 +41,7 @@ class Environment:
     name: str
     requires: tuple[str, ...]
     bare: tuple[str, ...]
-    script: str
+    module: str
     libraries: tuple[str, ...] = ()
     packages: tuple[str, ...] = ()
 
@@ -128,18 +128,18 @@ def install(environment: Environment) -> Path:
 
 
 def ask(environment: Environment, request: dict[str, Any], timeout: float) -> dict[str, Any]:
-    """Run the environment's script on a request and return its answer.
+    """Run the environment's module on a request and return its answer.
 
     Raises:
-        CodeError: the environment has not been created, or the script crashed, took longer than ``timeout`` seconds, or
+        CodeError: the environment has not been created, or its process crashed, took longer than ``timeout`` seconds, or
             reported an error.
     """
     if environment.version() is None:
         raise CodeError(f"{environment.name} is not installed: {environment.hint}")
-    script = Path(__file__).with_name(f"{environment.script}.py")
+    script = Path(__file__).with_name("answer.py")
     try:
         done = subprocess.run(
-            [str(environment.python), "-I", str(script)],
+            [str(environment.python), "-I", str(script), environment.module],
             input=json.dumps(request),
             capture_output=True,
             text=True,

@@ -107,7 +107,7 @@ class Frame3DD(BladeAdapter):
 
 
 def request(blade: Blade, omega: float, ends: Array, count: int) -> dict[str, object]:
-    """The request for the script in Frame3DD's environment; elements lie between arc lengths ``ends`` (n+1,), m."""
+    """The request for ``frame3dd_worker``; elements lie between arc lengths ``ends`` (n+1,), m."""
     h = np.diff(ends)
     s, weight = gauss(ends, POINTS)
     at = sample(blade, s)

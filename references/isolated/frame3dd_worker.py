@@ -1,14 +1,12 @@
-"""Frame3DD's frame along x, rotating about z through the origin: one JSON object on standard input, one on standard output.
+"""Frame3DD's frame along x, rotating about z through the origin; run by ``answer`` in Frame3DD's environment.
 
-Only this file runs in Frame3DD's environment; it imports nothing but the code and NumPy. Request: ``x`` (n,) positions
-of nodes, the first clamped; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length, ``twist`` (n-1,) of the elements,
-in their axes; ``tip``, a mass; ``force`` (n,) along x and ``spring`` (n,) along z at the nodes; ``count`` of modes.
-Answer: ``frequencies`` (m,) rad/s, and ``shapes`` (m, 4, n): displacements, and rotation about x, at the nodes; or ``error``.
+Request: ``x`` (n,) positions of nodes, the first clamped; ``EA``, ``EI_y``, ``EI_z``, ``GJ``, ``mass`` per length,
+``twist`` (n-1,) of the elements, in their axes; ``tip``, a mass; ``force`` (n,) along x and ``spring`` (n,) along z at
+the nodes; ``count`` of modes.
+Answer: ``frequencies`` (m,) rad/s, and ``shapes`` (m, 4, n): displacements, and rotation about x, at the nodes.
 """
 
 import importlib.util
-import json
-import os
 import sys
 from pathlib import Path
 
@@ -25,19 +23,6 @@ MORE, ONE_PLANE = 3, 1e-6
 zero."""
 
 CONSISTENT, TOLERANCE = 0, 1e-9
-
-
-def main():
-    """Answer one request."""
-    request = json.load(sys.stdin)
-    reply = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # keep Frame3DD's prints out of the answer
-    try:
-        answer = solve(request)
-    except Exception as error:  # report whatever Frame3DD raises
-        answer = {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
-    reply.write(json.dumps(answer) + "\n")
-    reply.flush()
 
 
 def solve(request):
@@ -98,7 +83,3 @@ def run(frame, count, method):
     """The modes by one of Frame3DD's methods; RuntimeError if it fails."""
     frame.enableDynamics(count, method, CONSISTENT, TOLERANCE, 0.0)
     return frame.run()[-1]
-
-
-if __name__ == "__main__":
-    main()

@@ -28,7 +28,7 @@ from ...core.space.spatial import skew
 from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence
 from ..sampling import mass_at, stiffness_at
-from ..theories.reference_line import line
+from ..theories.reference_line import frames
 from ..theories.spectral import gauss, intervals
 from . import SHARPY, ask
 
@@ -109,15 +109,15 @@ def nodes(spans: Array) -> Array:
 
 
 def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
-    """The request for the script in SHARPy's environment; ``spans`` (e, 2) are the arc lengths of the elements' ends, m."""
+    """The request for ``sharpy_worker``; ``spans`` (e, 2) are the arc lengths of the elements' ends, m."""
     untwisted = replace(blade, twist=np.zeros_like(blade.twist))
-    position, axes = _frames(untwisted, nodes(spans))
+    position, axes = frames(untwisted, nodes(spans))
     psi = Rotation.from_matrix(axes).as_rotvec()
     length = np.diff(spans).ravel()
     at, weight = (np.concatenate(part) for part in zip(*(gauss(span, 3) for span in spans), strict=True))
     share = (weight / np.repeat(length, 3))[:, None, None]
-    level = np.swapaxes(_frames(untwisted, at)[1], 1, 2)
-    twist = np.kron(np.eye(2), level @ _frames(blade, at)[1])
+    level = np.swapaxes(frames(untwisted, at)[1], 1, 2)
+    twist = np.kron(np.eye(2), level @ frames(blade, at)[1])
     stiffness = stiffness_at(blade, at)
     bending = np.diagonal(stiffness, axis1=1, axis2=2)[:, [BEND_Y, BEND_Z]].max(1) / blade.length**2
     stiffness = np.where(np.isinf(stiffness), RIGID * bending[:, None, None], stiffness)
@@ -128,18 +128,12 @@ def request(blade: Blade, omega: float, spans: Array) -> dict[str, Any]:
     mass = longer * (share * (twist @ mass_at(blade, at) @ transposed_twist)).reshape(-1, 3, 6, 6).sum(1)
     arrays = {
         "nodes": position,
-        "turn": np.stack([psi[:-2:2], psi[2::2], psi[1::2]], axis=1),
+        "rotations": np.stack([psi[:-2:2], psi[2::2], psi[1::2]], axis=1),
         "stiffness": np.linalg.inv(compliance),
         "mass": mass,
         "tip": blade.tip_mass,
     }
     return {"omega": omega, **{name: value.tolist() for name, value in arrays.items()}}
-
-
-def _frames(blade: Blade, s: Array) -> tuple[Array, Array]:
-    """Positions (k, 3), m, and axes (k, 3, 3) of sections, in the hub's axes."""
-    at = line(blade, s[:, None])
-    return at.position[:, 0], at.axes[:, 0]
 
 
 def _unpacked(text: str) -> Array:

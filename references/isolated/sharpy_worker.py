@@ -1,34 +1,17 @@
-"""SHARPy's beam about its steady rotating state: one JSON object on standard input, one on standard output.
+"""SHARPy's beam about its steady rotating state; run by ``answer`` in SHARPy's environment.
 
-Only this file runs in SHARPy's environment; it imports nothing but SHARPy and NumPy. Request: ``nodes`` (n, 3) along
-the beam, in axes that rotate at ``omega`` (rad/s) about z through their origin; ``turn`` (e, 3, 3) the sections'
-rotation vectors at the nodes of each three-node element, in SHARPy's order (ends, then middle); ``stiffness`` and
-``mass`` (e, 6, 6); ``tip`` (6, 6). Answer: ``M``, ``C``, ``K`` (d, d) about the steady state and its coordinates ``q``
-(d,), little-endian doubles in base64: position and rotation vector of every node except the first, which is clamped; or
-``error``.
+Request: ``nodes`` (n, 3) along the beam, in axes that rotate at ``omega`` (rad/s) about z through their origin;
+``rotations`` (e, 3, 3), the sections' rotation vectors at the nodes of each three-node element, in SHARPy's order (ends,
+then middle); ``stiffness`` and ``mass`` (e, 6, 6); ``tip`` (6, 6). Answer: ``M``, ``C``, ``K`` (d, d) about the steady
+state and its coordinates ``q`` (d,), little-endian doubles in base64: position and rotation vector of every node except
+the first, which is clamped.
 """
 
 import base64
-import json
-import os
-import sys
 
 import numpy as np
 
 STEPS, SMALL = 60, 1e-10
-
-
-def main():
-    """Answer one request."""
-    request = json.load(sys.stdin)
-    reply = os.fdopen(os.dup(1), "w")
-    os.dup2(2, 1)  # keep SHARPy's prints out of the answer
-    try:
-        answer = solve(request)
-    except Exception as error:  # report whatever SHARPy raises
-        answer = {"error": f"{type(error).__name__}: {' '.join(str(error).split())}"}
-    reply.write(json.dumps(answer) + "\n")
-    reply.flush()
 
 
 def solve(request):
@@ -42,20 +25,20 @@ def solve(request):
     state.dqdt[:] = 0.0
     state.dqddt[:] = 0.0
     xbeam.cbeam3_solv_disp2state(beam, state)
-    steady, done, step = state.q[:d].copy(), 0.0, 1.0
+    q, done, step = state.q[:d].copy(), 0.0, 1.0
     length = np.ptp(np.array(request["nodes"]), axis=0).max()
     size = np.tile(np.repeat([length, 1.0], 3), d // 6)
     while done < 1.0:
         load = min(1.0, done + step)
-        balanced = newton(xbeam, beam, state, request["omega"] * load**0.5, steady, size)
+        balanced = newton(xbeam, beam, state, request["omega"] * load**0.5, q, size)
         if balanced is not None:
-            steady, done = balanced, load
+            q, done = balanced, load
         elif step > 2.0**-6:
             step /= 2
         else:
             return {"error": f"no steady state above {done:.0%} of the centrifugal load"}
-    M, C, K, _ = assembled(xbeam, beam, state, request["omega"], steady)
-    return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", steady))}
+    M, C, K, _ = assembled(xbeam, beam, state, request["omega"], q)
+    return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", q))}
 
 
 def newton(xbeam, beam, state, omega, start, size):
@@ -104,8 +87,8 @@ def built(request):
     """
     from sharpy.structure.models.beam import Beam  # pyright: ignore[reportMissingImports]
 
-    nodes, turn = np.array(request["nodes"]), np.array(request["turn"])
-    n, e = len(nodes), len(turn)
+    nodes, rotations = np.array(request["nodes"]), np.array(request["rotations"])
+    n, e = len(nodes), len(rotations)
     supports = np.zeros(n, dtype=int)
     supports[0], supports[-1] = 1, -1
     data = {
@@ -119,7 +102,7 @@ def built(request):
         "stiffness_db": np.array(request["stiffness"]),
         "elem_mass": np.arange(e),
         "mass_db": np.array(request["mass"]),
-        "frame_of_reference_delta": across(turn),
+        "frame_of_reference_delta": across(rotations),
         "structural_twist": np.zeros((e, 3)),
         "app_forces": np.zeros((n, 6)),
         "beam_number": np.zeros(e, dtype=int),
@@ -130,22 +113,18 @@ def built(request):
     beam = Beam()
     beam.generate(data, {"orientation": np.array([1.0, 0.0, 0.0, 0.0]), "for_pos": np.zeros(3), "unsteady": False})
     for info in (beam.ini_info, beam.timestep_info[0]):
-        info.psi[:] = turn
-    beam.fortran["psi_ini"][:] = turn
+        info.psi[:] = rotations
+    beam.fortran["psi_ini"][:] = rotations
     return beam
 
 
-def across(turn):
+def across(rotations):
     """The sections' y (e, 3, 3)."""
     from sharpy.utils.algebra import crv2rotation  # pyright: ignore[reportMissingImports]
 
-    return np.array([[crv2rotation(psi)[:, 1] for psi in element] for element in turn])
+    return np.array([[crv2rotation(psi)[:, 1] for psi in element] for element in rotations])
 
 
 def packed(array):
     """Encode doubles as base64 text."""
     return base64.b64encode(np.ascontiguousarray(array, dtype="<f8").tobytes()).decode()
-
-
-if __name__ == "__main__":
-    main()

@@ -2,6 +2,7 @@
 
 import ast
 import re
+import shutil
 import subprocess
 import sys
 from dataclasses import replace
@@ -32,9 +33,10 @@ def made(environment: Environment) -> None:
     (environment.folder / READY).touch()
 
 
-def script(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str) -> None:
-    """Replace the script of the folder."""
+def module(monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str) -> None:
+    """Let the environment run a module with this text."""
     (tmp_path / "echo.py").write_text(text)
+    shutil.copy(Path(isolated.__file__).with_name("answer.py"), tmp_path)
     monkeypatch.setattr(isolated, "__file__", str(tmp_path / "__init__.py"))
 
 
@@ -49,7 +51,7 @@ def test_the_cache_folder_can_be_set(cache: Path, monkeypatch: pytest.MonkeyPatc
 
 def test_other_pins_use_another_environment() -> None:
     assert ECHO.folder != replace(ECHO, requires=("one==1.1",)).folder
-    assert ECHO.folder == replace(ECHO, script="other").folder
+    assert ECHO.folder == replace(ECHO, module="other").folder
 
 
 def test_every_requirement_is_pinned() -> None:
@@ -69,7 +71,7 @@ def test_an_incomplete_environment_does_not_count() -> None:
 
 def test_request_and_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     made(ECHO)
-    script(monkeypatch, tmp_path, "import json, sys\nprint(json.dumps({'got': json.load(sys.stdin)}))")
+    module(monkeypatch, tmp_path, "def solve(request):\n    print('noise')\n    return {'got': request}")
     assert isolated.ask(ECHO, {"x": [0.1, 2.0]}, 30.0) == {"got": {"x": [0.1, 2.0]}}
 
 
@@ -77,18 +79,19 @@ def test_request_and_answer(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> 
     ("text", "reported"),
     [
         ("import sys; sys.exit('library: not found')", "its process ended with exit status 1: library: not found"),
-        ('print(\'{"error": "no steady state"}\')', "echo: no steady state"),
+        ("def solve(_): raise ValueError('no steady\\nstate')", "echo: ValueError: no steady state"),
         ("import time; time.sleep(30)", r"no answer within 0\.5 s"),
-        ("", "its process ended with exit status 0: no message"),
+        ("", "echo: AttributeError: module 'echo' has no attribute 'solve'"),
+        ("import os; os._exit(0)", "its process ended with exit status 0: no message"),
     ],
 )
-def test_errors_of_the_script_are_reported(
+def test_errors_of_the_module_are_reported(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, text: str, reported: str
 ) -> None:
     made(ECHO)
-    script(monkeypatch, tmp_path, text)
+    module(monkeypatch, tmp_path, text)
     with pytest.raises(CodeError, match=reported):
-        isolated.ask(ECHO, {}, 0.5)
+        isolated.ask(ECHO, {}, 0.5 if "sleep" in text else 30.0)
 
 
 def test_the_installation_hint_if_missing() -> None:
@@ -173,9 +176,9 @@ def test_the_command_line_installs(monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert "No matching distribution found for ic-sharpy" in capsys.readouterr().err
 
 
-def test_scripts_import_nothing_of_this_package() -> None:
-    for environment in ENVIRONMENTS.values():
-        path = Path(isolated.__file__).with_name(f"{environment.script}.py")
+def test_what_runs_in_environments_imports_nothing_of_this_package() -> None:
+    for name in ("answer", *(environment.module for environment in ENVIRONMENTS.values())):
+        path = Path(isolated.__file__).with_name(f"{name}.py")
         tree = ast.parse(path.read_text(encoding="utf-8"))
         imported = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
         imported |= {n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
