@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.mechanism.description import Mechanism
+from ...core.space.spatial import skew
 from .closure import equations, reversed_axes
 from .points import Function, by, distance, frames
 from .spanning import Spanning, spanning
@@ -26,7 +27,7 @@ class Tangent:
         force: (n,) to be balanced by the reactions of the loops.
         M, C, K: (n, n) its derivatives by acceleration, velocity and coordinate.
         loops: (c) the equations of the loops.
-        reversed: name of a loop joint whose axes are opposed; empty if there is none.
+        opposed: name of a loop joint whose axes are opposed; empty if there is none.
     """
 
     force: Array
@@ -34,7 +35,12 @@ class Tangent:
     C: Array
     K: Array
     loops: tuple[Function, ...]
-    reversed: str
+    opposed: str
+
+    @property
+    def gap(self) -> Array:
+        """(c,) values of the loops' equations."""
+        return np.array([f.value for f in self.loops])
 
     @property
     def J(self) -> Array:
@@ -48,6 +54,10 @@ class Tangent:
             out -= value * f.hessian
         return out
 
+    def misclosed(self) -> str:
+        """See ``matrices.null_space.Tangent``."""
+        return self.opposed
+
 
 def _pinocchio() -> Any:
     import pinocchio
@@ -56,12 +66,15 @@ def _pinocchio() -> Any:
 
 
 class PinocchioTree:
-    """A mechanism in Pinocchio; ``tree`` is its spanning tree, ``v`` (n,) the rates of its motions."""
+    """A mechanism in Pinocchio (see ``matrices.null_space.Model``); ``tree`` is its spanning tree."""
+
+    rounding = 1e-8
 
     def __init__(self, mechanism: Mechanism) -> None:
         pinocchio = _pinocchio()
         self.tree: Spanning = spanning(mechanism)
         self.mechanism = mechanism
+        self.names = self.tree.names
         self._pin: Any = pinocchio
         self._model: Any = pinocchio.Model()
         self._model.gravity.linear = np.array(mechanism.gravity, dtype=float)
@@ -77,9 +90,9 @@ class PinocchioTree:
         self._ids: list[int] = []
         self._add_frames()
         self._data: Any = self._model.createData()
-        self.v: Array = np.zeros(len(self.tree.links))
+        self.rates: Array = np.zeros(len(self.tree.links))
         for m in mechanism.motions:
-            self.v[self.tree.names.index(m.coordinate)] = m.rate
+            self.rates[self.names.index(m.coordinate)] = m.rate
 
     def _add_frames(self) -> None:
         """Add frames of the loop joints, then of the springs, then of the loads, two each."""
@@ -99,43 +112,43 @@ class PinocchioTree:
 
     def at(self, q: Array) -> Tangent:
         """The tree at coordinates q (n,), its motions at their rates."""
-        pin, model, data, m = self._pin, self._model, self._data, self.mechanism
-        pin.computeRNEADerivatives(model, data, q, self.v, np.zeros_like(q))
+        pin, model, data, mechanism = self._pin, self._model, self._data, self.mechanism
+        pin.computeRNEADerivatives(model, data, q, self.rates, np.zeros_like(q))
         n = len(q)
         force, K, C = np.array(data.tau), *(np.reshape(a, (n, n)).copy() for a in (data.dtau_dq, data.dtau_dv))
         M = np.reshape(pin.crba(model, data, q), (n, n))
         M = np.triu(M) + np.triu(M, 1).T
-        for s in m.coordinate_springs:
-            j = self.tree.names.index(s.coordinate)
-            force[j] += s.stiffness * (q[j] - s.neutral) + s.damping * self.v[j]
+        for s in mechanism.coordinate_springs:
+            j = self.names.index(s.coordinate)
+            force[j] += s.stiffness * (q[j] - s.neutral) + s.damping * self.rates[j]
             K[j, j] += s.stiffness
             C[j, j] += s.damping
         poses = frames(pin, model, data, q, self._ids)
         pairs = list(zip(poses[::2], poses[1::2], strict=True))
-        first, second = len(self.tree.loops), len(self.tree.loops) + len(m.springs)
-        for s, (a, b) in zip(m.springs, pairs[first:second], strict=True):
+        first, second = len(self.tree.loops), len(self.tree.loops) + len(mechanism.springs)
+        for s, (a, b) in zip(mechanism.springs, pairs[first:second], strict=True):
             line = distance(a, b)
-            rate, rate_of_gradient = line.gradient @ self.v, line.hessian.T @ self.v
+            rate, rate_of_gradient = line.gradient @ self.rates, line.hessian.T @ self.rates
             tension = s.stiffness * (line.value - s.free_length) + s.damping * rate
             force += tension * line.gradient
             K += tension * line.hessian + np.outer(
                 line.gradient, s.stiffness * line.gradient + s.damping * rate_of_gradient
             )
             C += s.damping * np.outer(line.gradient, line.gradient)
-        for load, (axes, point) in zip(m.loads, pairs[second:], strict=True):
+        for load, (axes, point) in zip(mechanism.loads, pairs[second:], strict=True):
             pushed = axes.R @ np.asarray(load.force, float)  # its axes rotate by prescribed coordinates only
             force -= point.V.T @ pushed
             K -= by(point.V1, pushed)
         closing = list(zip(self.tree.loops, pairs[:first], strict=True))
         loops = [f for joint, (p, c) in closing for f in equations(joint, p, c)]
-        wrong = next((joint.name for joint, (p, c) in closing if reversed_axes(joint, p, c)), "")
-        return Tangent(force, M, C, K, tuple(loops), wrong)
+        opposed = next((joint.name for joint, (p, c) in closing if reversed_axes(joint, p, c)), "")
+        return Tangent(force, M, C, K, tuple(loops), opposed)
 
 
 def _inertia(pin: Any, about_origin: Array) -> Any:
     """Pinocchio's inertia from one (6, 6) about the body's origin, forces before moments."""
     mass = float(about_origin[0, 0])
     centre = np.array([about_origin[1, 5], about_origin[2, 3], about_origin[0, 4]]) / (mass or 1.0)
-    cross = np.array([[0, -centre[2], centre[1]], [centre[2], 0, -centre[0]], [-centre[1], centre[0], 0]])
-    moments, axes = np.linalg.eigh(about_origin[3:, 3:] + mass * cross @ cross)
+    lever = skew(centre)
+    moments, axes = np.linalg.eigh(about_origin[3:, 3:] + mass * lever @ lever)
     return pin.Inertia(mass, centre, (axes * np.maximum(moments, 0.0)) @ axes.T)  # rounding may make a moment negative

@@ -111,7 +111,7 @@ def test_the_request() -> None:
     soft = turned @ np.diag(1 / np.diagonal(stiffness_at(blade, 10.0)[0]))[3:, 3:] @ turned.T
     np.testing.assert_allclose(here[3:, 3:], soft, rtol=1e-6, atol=1e-6 * soft.max())
     assert soft[1, 2] > 0.05 * soft[1, 1]
-    assert not np.array(asked["turn"]).any()
+    assert not np.array(asked["rotations"]).any()
 
 
 def test_mass_and_compliance_are_scaled_from_arc_to_chord() -> None:

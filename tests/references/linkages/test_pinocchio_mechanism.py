@@ -15,6 +15,7 @@ from southwell.core.tree.spanning import compile_tree
 from southwell.references.linkages import mechanism as lm
 from southwell.references.linkages.pinocchio_tree import PinocchioTree
 from southwell.references.linkages.spanning import AXES, spanning
+from southwell.references.matrices import null_space
 from southwell.references.protocol.interface import CodeError
 from southwell.tests.support.linkages import (
     FOUR,
@@ -33,7 +34,7 @@ from southwell.tests.support.linkages import (
 pytestmark = pytest.mark.skipif(lm.CODE.version() is None, reason=f"not installed: {lm.CODE.hint}")
 
 
-def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> lm.Reduced:
+def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> null_space.Linearized:
     """Compare steady state, eigenvalues with damping, and shapes; return the adapter's equations."""
     found, answer = mb.solve(mechanism, guess), lm.CODE.solve_mechanism(mechanism, guess)
     ours = [found.coordinates.index(name) for name in answer.coordinates]
@@ -48,7 +49,7 @@ def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> lm.Red
             theirs = found.shapes[k, ours]
             mac = abs(np.vdot(theirs, shape)) ** 2 / (np.vdot(theirs, theirs) * np.vdot(shape, shape)).real
             assert mac > 1 - 1e-6
-    return lm.linearize(mechanism, guess)
+    return null_space.linearize(PinocchioTree(mechanism), guess)
 
 
 @pytest.mark.parametrize("cut", ["", "B", "C", "D"])
@@ -105,7 +106,7 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
 
 
 def every_element() -> tuple[PinocchioTree, np.ndarray]:
-    """A plant with a loop of every kind, a spring between points and a load, at a configuration where no term vanishes."""
+    """A mechanism with a loop of every kind, a spring between points and a load, at a configuration where no term vanishes."""
     rng = np.random.default_rng(3)
     m, _ = random_loop(["spherical", "cylindrical", "universal"], "revolute", [False, True, False, False, False], 5)
     loops = []
@@ -116,26 +117,26 @@ def every_element() -> tuple[PinocchioTree, np.ndarray]:
     m = replace(
         m, joints=(*m.joints[:-1], *loops), springs=(spring,), loads=(Load("b2", rng.normal(size=3), "ground"),)
     )
-    plant = PinocchioTree(m)
-    return plant, rng.normal(size=len(plant.v))
+    model = PinocchioTree(m)
+    return model, rng.normal(size=len(model.rates))
 
 
 def test_every_derivative_agrees_with_differences() -> None:
-    plant, q = every_element()
-    here, h = plant.at(q), 1e-5
+    model, q = every_element()
+    here, h = model.at(q), 1e-5
     assert len(here.loops) == 6 + 5 + 5 + 4 + 4 + 3 + 3
     for k, e in enumerate(h * np.eye(len(q))):
-        up, down = plant.at(q + e), plant.at(q - e)
+        up, down = model.at(q + e), model.at(q - e)
         np.testing.assert_allclose((up.force - down.force) / (2 * h), here.K[:, k], atol=1e-7, err_msg=f"K {k}")
         for i, (f, a, b) in enumerate(zip(here.loops, up.loops, down.loops, strict=True)):
             np.testing.assert_allclose((a.value - b.value) / (2 * h), f.gradient[k], atol=1e-8, err_msg=f"{i}")
             np.testing.assert_allclose((a.gradient - b.gradient) / (2 * h), f.hessian[:, k], atol=1e-8, err_msg=f"{i}")
-        rates = plant.v.copy()
+        rates = model.rates.copy()
         forces = []
         for sign in (1, -1):
-            plant.v = rates + sign * e
-            forces.append(plant.at(q).force)
-        plant.v = rates
+            model.rates = rates + sign * e
+            forces.append(model.at(q).force)
+        model.rates = rates
         np.testing.assert_allclose((forces[0] - forces[1]) / (2 * h), here.C[:, k], atol=1e-7, err_msg=f"C {k}")
     for f in here.loops:
         np.testing.assert_allclose(f.hessian, f.hessian.T, atol=1e-12)
@@ -150,16 +151,16 @@ def test_a_loop_joint_leaves_only_its_coordinates_free(kind: Kind) -> None:
     ]
     tied = mb.Mechanism((mb.Body("b"),), (mb.Joint("j", kind, "ground", "b", frames[0], frames[1]),))
     tree = PinocchioTree(tied)
-    at = np.linspace(0.2, 0.7, len(tree.v))
+    at = np.linspace(0.2, 0.7, len(tree.rates))
     pose = np.eye(4)
     for link, value in zip(tree.tree.links, at, strict=True):
         pose = pose @ link.frame @ np.array(mb.at()) @ _moved(link.axis, link.turns, value)
     pose = pose @ (tree.tree.bodies["b"][1] if len(at) else frames[0] @ np.linalg.inv(frames[1]))
     loose = mb.Joint("loose", "free", "ground", "b", np.eye(4), np.asarray(np.linalg.inv(pose), float))
-    plant = PinocchioTree(replace(tied, joints=(loose, replace(tied.joints[0], cut=True))))
-    here = plant.at(np.zeros(6))
+    model = PinocchioTree(replace(tied, joints=(loose, replace(tied.joints[0], cut=True))))
+    here = model.at(np.zeros(6))
     np.testing.assert_allclose([f.value for f in here.loops], 0.0, atol=1e-12)
-    assert not here.reversed
+    assert not here.misclosed()
     assert ranked(here.J).null.shape[1] == len(AXES[kind].split())
 
 
