@@ -1,13 +1,14 @@
 """What runs when, and where: property tests with the same examples in continuous integration and others every night."""
 
 import os
+from collections.abc import Iterator
 
 import pytest
 from hypothesis import settings
 
+from southwell.references.protocol import launch
 from southwell.tests.support.guesses import every_steady_state_again
 from southwell.tests.support.importable import importable
-from southwell.tests.support.keeping import keeping
 
 os.environ.setdefault("SOUTHWELL_FRESH", "1")  # no test takes an answer that an earlier one has stored
 
@@ -28,4 +29,22 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
         items[:] = [item for item in items if item not in set(left)]
 
 
-__all__ = ["every_steady_state_again", "importable", "keeping"]
+@pytest.fixture(scope="session", autouse=True)
+def launching() -> Iterator[None]:
+    """Keep the process that forks those of codes from one test to the next: starting one takes a second.
+
+    pytest puts the name of each test into the environment, which for the package is another environment.
+    """
+    environment_and_folder = launch._surroundings
+
+    def without_the_test() -> tuple[dict[str, str], str]:
+        environment, folder = environment_and_folder()
+        environment.pop("PYTEST_CURRENT_TEST", None)
+        return environment, folder
+
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(launch, "_surroundings", without_the_test)
+        yield
+
+
+__all__ = ["every_steady_state_again", "importable"]

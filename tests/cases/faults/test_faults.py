@@ -21,8 +21,6 @@ from southwell.reports.verification import controls as reported
 
 from ...support import counting_canaries, gate_canaries, samples
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 
 def test_the_table_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40

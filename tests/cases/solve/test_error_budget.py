@@ -27,8 +27,6 @@ from southwell.reports.verification import error_budget as reported
 
 from ...support.straight_blades import Y, family, park
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 CASE = "park-cantilever"
 
 

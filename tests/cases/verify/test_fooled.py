@@ -40,8 +40,6 @@ from southwell.reports.verification.case_tables import comparison
 from ...reports.cli.test_cli import southwell
 from ...support import samples
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 PARK = "park-cantilever"
 
 

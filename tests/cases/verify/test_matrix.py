@@ -42,8 +42,6 @@ stiffness = "body_fixed"
 """
 
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 ANALYTIC, MISBEHAVING = ("southwell.tests.support.analytic:", "southwell.tests.support.misbehaving:")
 AT_REST = ("GOOD", "ROUGH", "WRONG", "SLOW", "CRUDE", "LYING", "SPECTRAL", "PLANAR", "BACKWARDS", "SIDEWAYS", "ABSENT")
 
@@ -65,7 +63,7 @@ def solve(case: Case, *codes: str, timeout: float = 60.0, parts: bool = False) -
 
 
 @pytest.fixture(scope="module")
-def at_rest(keeping: None, tmp_path_factory: pytest.TempPathFactory) -> Run:
+def at_rest(tmp_path_factory: pytest.TempPathFactory) -> Run:
     """The made-up codes on the blade at rest."""
     return solve(write(tmp_path_factory.mktemp("rest")), *(ANALYTIC + code for code in AT_REST), parts=True)
 

@@ -28,8 +28,6 @@ from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
 from southwell.tests.support.codes import MECHANISM_CODES
 
-pytestmark = pytest.mark.usefixtures("keeping")
-
 HEAD = Head("case", "code", "1", "same discretisation", 1e-8)
 TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
 

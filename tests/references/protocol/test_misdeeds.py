@@ -10,12 +10,11 @@ import pytest
 
 from southwell.core.blade import uniform_blade
 from southwell.core.modes import Modes
-from southwell.references.protocol import description, registry
+from southwell.references.protocol import description, launch, registry
 from southwell.references.protocol.description import Description, describe
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.protocol.worker import answers
 
-from ...support.keeping import kept
 from ...support.misdeeds import ANSWERS, DECLARATIONS, TABLE, Misdeed, answering, declaring, module
 
 pytestmark = pytest.mark.slow
@@ -49,8 +48,10 @@ def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Fail
 
 @pytest.fixture(scope="module")
 def done(folder: Path) -> dict[Misdeed, tuple[Description, list[Modes | Failure]]]:
-    with kept(), ThreadPoolExecutor(2) as threads:
-        return dict(zip(TABLE, threads.map(partial(does, folder=folder), TABLE), strict=True))
+    with ThreadPoolExecutor(2) as threads:
+        answered = dict(zip(TABLE, threads.map(partial(does, folder=folder), TABLE), strict=True))
+    launch.prepare().close()
+    return answered
 
 
 @pytest.mark.parametrize("misdeed", TABLE, ids=lambda m: f"{m.when}-{m.name}")
