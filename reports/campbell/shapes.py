@@ -9,6 +9,7 @@ import numpy as np
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
+from matplotlib.ticker import MaxNLocator
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
@@ -33,6 +34,9 @@ FINE = np.linspace(0.0, 1.0, 141)
 LAGGING = 0.02
 """Smallest imaginary part of a shape that is drawn."""
 
+SEEN = 0.01
+"""Smallest torsion that gets an axis, as a fraction of the panel's largest motion."""
+
 
 def scaled(diagram: Campbell, k: int, arm: float = 0.0) -> tuple[list[int], Complex]:
     """The tracks at speed number ``k`` by frequency, and their shapes, complex (m, 21, 4), in the blade's axes.
@@ -54,9 +58,9 @@ def scaled(diagram: Campbell, k: int, arm: float = 0.0) -> tuple[list[int], Comp
 def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
     """Draw one panel per mode: flapwise, edgewise and torsional motion along the span, at speed number ``k``.
 
-    Torsion is shown as rotation times the blade's radius of gyration: the square of each line, weighted with mass, is
-    its fraction of the kinetic energy. At the end of its line is the rotation in degrees. Dotted lines are the part of a motion
-    that is 90° out of phase.
+    Torsion is a rotation, on an axis of its own at the right, in degrees. The scales of the two axes differ by the blade's radius
+    of gyration: the square of each line, weighted with mass, is its fraction of the kinetic energy. Dotted lines are the part of a
+    motion that is 90° out of phase.
     """
     arm = gyration(diagram.blade)
     order, shapes = scaled(diagram, k, arm)
@@ -67,9 +71,9 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
         figure = Figure((WIDTH, height))
         for place, t in enumerate(order):
             row, column = divmod(place, ACROSS)
-            left = 0.065 + column * 0.325
+            left = 0.05 + column * 0.325
             bottom = (low + (rows - 1 - row) * panel + 0.12) / height
-            axes = figure.add_axes((left, bottom, 0.218, (panel - 0.72) / height))
+            axes = figure.add_axes((left, bottom, 0.205, (panel - 0.72) / height))
             _panel(axes, shapes[place], arm)
             hertz = diagram.tracks.frequencies[k, t] * units.frequencies
             name = diagram.labels.at(t, float(diagram.tracks.omega[k]))
@@ -90,7 +94,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 axes.set_xticklabels([])
         turns = "no torsional inertia in this file"
         if arm:
-            turns = f"torsion: 1 is {np.degrees(1.0 / arm):.3g}°, 1 m of arc at the radius of gyration, {arm:.3g} m"
+            turns = f"torsion in degrees; {np.degrees(1.0 / arm):.3g}° is 1 m of arc at the radius of gyration, {arm:.3g} m"
         title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest motion 1 m; {turns}")
         handles = [
             Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flapwise", "edgewise")
@@ -122,18 +126,33 @@ def _panel(axes: Axes, shape: Complex, arm: float) -> None:
             axes.plot(FINE, smooth.imag, color=colour, lw=1.0, ls=(0, (1, 2)), zorder=2)
         ends.append((float(line[-1].real), family))
     heights = spread([y for y, _ in ends], 0.24)
+    offset = 4
+    if arm and np.abs(arm * shape[:, 3]).max() > SEEN:
+        _degrees(axes, arm)
+        offset = 28
     for y, (value, family) in zip(heights, ends, strict=True):
         text = f"{np.degrees(value / arm):+.2g}°" if family == "torsion" else f"{value:+.2f}"
         axes.annotate(
             text.replace("-", "−") if abs(value) >= 0.005 else "0",
             (1.0, y),
-            (4, 0),
+            (offset, 0),
             textcoords="offset points",
             va="center",
             size=7.5,
             color=FAMILY_COLOURS[family],
             annotation_clip=False,
         )
+
+
+def _degrees(axes: Axes, arm: float) -> None:
+    """An axis of rotations (degrees) at the right of a panel of displacements (m); ``arm`` (m) relates the two."""
+    right = axes.twinx()
+    right.set_ylim(*np.degrees(np.array(axes.get_ylim()) / arm))
+    right.yaxis.set_major_locator(MaxNLocator(4, steps=[1, 2, 3, 5, 10], symmetric=True))
+    right.yaxis.set_major_formatter(lambda value, _: f"{value:.3g}°".replace("-", "−"))
+    right.spines["right"].set_visible(True)
+    right.spines["right"].set_color(FAMILY_COLOURS["torsion"])
+    right.tick_params(colors=FAMILY_COLOURS["torsion"], labelsize=7.5)
 
 
 def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:

@@ -172,7 +172,7 @@ def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fracti
     assert "90° out of phase" in texts  # edge lags by 0.3 rad in these oscillators
 
 
-def test_no_line_leaves_its_panel_and_torsion_is_in_degrees() -> None:
+def test_no_line_leaves_its_panel_and_torsion_has_an_axis_in_degrees() -> None:
     """A torsion mode moves its axis little: scaled by displacements alone, its rotation once left the panel."""
     blade = uniform_blade("torsion", 1.0, 0.1, EA=1e6, GJ=1.0, EI_y=1e4, EI_z=2e4, mass=1.0, I_y=1e-2, I_z=1e-2)
     drawn = campbell(blade, CampbellRequest((0.0, 1.0), modes=2, elements=12))
@@ -185,8 +185,11 @@ def test_no_line_leaves_its_panel_and_torsion_is_in_degrees() -> None:
             assert (values >= low).all()
             assert (values <= high).all()
     texts = [t.get_text() for t in figure.axes[0].findobj(Text)]  # type: ignore[attr-defined]
-    radius = np.sqrt(2e-2)
-    assert f"{np.degrees(1.0 / radius):+.2g}°" in texts
+    degrees = np.degrees(1.0 / np.sqrt(2e-2))
+    assert f"{degrees:+.2g}°" in texts
+    axes, right = figure.axes[:2]
+    np.testing.assert_allclose(right.get_ylim(), degrees * np.array(axes.get_ylim()))
+    assert all(t.get_text().endswith("°") for t in right.get_yticklabels())
 
 
 def test_csv_holds_the_shapes(found: Campbell, tmp_path: Path) -> None:
