@@ -171,12 +171,12 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
         raise _failed(error) from error
     alpha, beta = pair
     finite = np.abs(beta) > 1e-12 * np.abs(alpha)
+    finite[np.argsort(np.abs(beta) / np.maximum(np.abs(alpha), 1e-300))[:d]] = False  # b has d rows of zeros
     values, x = alpha[finite] / beta[finite], unit[:, None] * (massive @ z[:r, finite] + massless @ z[r:n, finite])
     order = np.argsort(np.abs(values), kind="stable")
     twice = int((np.abs(values[order[:d]]) < TOLERANCE).sum())  # second zeros of double eigenvalues
     values, x = values[order[twice:]] / time, x[:, order[twice:]]
-    largest = np.abs(values).max(initial=0.0)
-    one_of_each = values.imag >= -1e-12 * largest
+    one_of_each = values.imag >= 0.0  # LAPACK's conjugates of a real pencil are exact
     values = np.concatenate([np.zeros(d, np.complex128), values[one_of_each]])[:count]
     return Damped(values, np.hstack([Z.astype(np.complex128), x[:, one_of_each]])[:, :count])
 

@@ -27,6 +27,17 @@ def test_the_example_by_hand_is_its_closed_form() -> None:
     assert found.leading == ("lag.rz", "flap.rz")
 
 
+def test_the_free_shaft_has_each_mode_once_in_each_plane() -> None:
+    """Timoshenko's free beam, in closed form: 9646.8 and 25312.6 rad/s (petrobras/ross issue 885 has 9500 and 1600 for the first).
+
+    Rounding once gave the pencil's infinite eigenvalues finite values, and then every mode counted twice.
+    """
+    found = mb.solve(runpy.run_path(str(EXAMPLES / "free_shaft.py"))["free_shaft"]())
+    assert len(found.frequencies) == len(found.linear.names)
+    np.testing.assert_allclose(found.frequencies[:6], 0.0)
+    np.testing.assert_allclose(found.frequencies[6:10], [9646.8, 9646.8, 25312.6, 25312.6], rtol=5e-5)
+
+
 def test_the_example_in_toml_is_the_one_by_hand() -> None:
     """M̂, Ĉ and K̂ alike, not only frequencies."""
     by_hand = mb.solve(runpy.run_path(str(EXAMPLES / "hinged_blade.py"))["hinged_blade"]())
