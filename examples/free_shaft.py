@@ -1,5 +1,6 @@
-"""Bending frequencies of a free steel shaft, 300 mm long, 30.08 mm outside and 7 mm inside diameter (petrobras/ross issue 885)."""
+"""Bending frequencies of a free steel shaft: length 300 mm, diameters 30.08 and 7 mm (petrobras/ross issue 885)."""
 
+from itertools import pairwise
 from math import pi
 
 from southwell import multibody as mb
@@ -16,7 +17,7 @@ def free_shaft(elements: int = 12) -> mb.Mechanism:
     """A chain of equal beams whose first end is free."""
     nodes = [f"node{k}" for k in range(elements + 1)]
     h = LENGTH / elements
-    links = list(zip(nodes, nodes[1:], strict=False))
+    links = list(pairwise(nodes))
     section = {"EA": E * AREA, "GJ": 2 * G * INERTIA, "EI_y": E * INERTIA, "EI_z": E * INERTIA}
     section |= {"GA_y": SHEAR * G * AREA, "GA_z": SHEAR * G * AREA}
     section |= {"mass": DENSITY * AREA, "I_y": DENSITY * INERTIA, "I_z": DENSITY * INERTIA}

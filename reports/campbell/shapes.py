@@ -58,9 +58,9 @@ def scaled(diagram: Campbell, k: int, arm: float = 0.0) -> tuple[list[int], Comp
 def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
     """Draw one panel per mode: flapwise, edgewise and torsional motion along the span, at speed number ``k``.
 
-    Torsion is a rotation, on an axis of its own at the right, in degrees. The scales of the two axes differ by the blade's radius
-    of gyration: the square of each line, weighted with mass, is its fraction of the kinetic energy. Dotted lines are the part of a
-    motion that is 90° out of phase.
+    Torsion is a rotation, on an axis of its own at the right, in degrees. The scales of the two axes differ by the blade's
+    radius of gyration: the square of each line, weighted with mass, is its fraction of the kinetic energy. Dotted lines are the
+    part of a motion that is 90° out of phase.
     """
     arm = gyration(diagram.blade)
     order, shapes = scaled(diagram, k, arm)
@@ -94,7 +94,9 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 axes.set_xticklabels([])
         turns = "no torsional inertia in this file"
         if arm:
-            turns = f"torsion in degrees; {np.degrees(1.0 / arm):.3g}° is 1 m of arc at the radius of gyration, {arm:.3g} m"
+            turns = (
+                f"torsion in degrees; {np.degrees(1.0 / arm):.3g}° is 1 m of arc at the radius of gyration, {arm:.3g} m"
+            )
         title(figure, heading, f"{units.at(float(diagram.tracks.omega[k]))}; largest motion 1 m; {turns}")
         handles = [
             Line2D([], [], color=FAMILY_COLOURS[f], ls=DASHES[f], lw=1.6, label=f) for f in ("flapwise", "edgewise")

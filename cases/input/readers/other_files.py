@@ -17,8 +17,8 @@ MODULE_FILE = (
 MARKS: tuple[tuple[Callable[[Text], bool], str], ...] = (
     (
         lambda text: any(line.startswith("Linearized model") for line in text.lines[:5]),
-        "a linearisation that OpenFAST has written, not its input: give the .fst file of that run, or the blade's file; to judge "
-        "the linearisation, run `southwell judge FILE.lin`",
+        "a linearisation that OpenFAST has written, not its input: give the .fst file of that run, or the blade's file; "
+        "to judge the linearisation, run `southwell judge FILE.lin`",
     ),
     (
         lambda text: any(re.search(r"Mode No\.\s*\d+\s*\(freq", line) for line in text.lines),

@@ -28,7 +28,7 @@ def test_the_example_by_hand_is_its_closed_form() -> None:
 
 
 def test_the_free_shaft_has_each_mode_once_in_each_plane() -> None:
-    """Timoshenko's free beam, in closed form: 9646.8 and 25312.6 rad/s (petrobras/ross issue 885 has 9500 and 1600 for the first).
+    """Timoshenko's free beam, in closed form: 9646.8 and 25312.6 rad/s (petrobras/ross issue 885).
 
     Rounding once gave the pencil's infinite eigenvalues finite values, and then every mode counted twice.
     """
