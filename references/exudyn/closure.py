@@ -76,19 +76,6 @@ class System:
             out[:, j] = -(8.0 * (c - b) - (d - a)) / (12.0 * _STEP)
         return out
 
-    def integrated(self, q: Array, v: Array, time: float, steps: int) -> tuple[Array, Array]:
-        """Coordinates and rates (n,) after a time, s, from q and v, by the explicit method of order 7; no constraints."""
-        exu, data, settings = self._exu, self._mbs.systemData, self._exu.SimulationSettings()
-        initial, current = exu.ConfigurationType.Initial, exu.ConfigurationType.Current
-        settings.solution.file.write = False
-        settings.timeIntegration.verboseMode = 0
-        settings.timeIntegration.numberOfSteps = steps
-        settings.timeIntegration.endTime = time
-        data.SetODE2Coordinates(q, configuration=initial)
-        data.SetODE2Coordinates_t(v, configuration=initial)
-        self._mbs.SolveDynamic(settings, solverType=exu.DynamicSolverType.RK67)
-        return np.array(data.GetODE2Coordinates(current)), np.array(data.GetODE2Coordinates_t(current))
-
     def _at(self, q: Array) -> Any:
         """A static solver whose initial values are q."""
         self._mbs.systemData.SetODE2Coordinates(q, configuration=self._exu.ConfigurationType.Initial)

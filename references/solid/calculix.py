@@ -1,4 +1,4 @@
-"""CalculiX (``ccx``): rotating solid blades of 20-node hexahedra, and their matrices for condensation.
+"""CalculiX (``ccx``): rotating solid blades of 20-node hexahedra.
 
 G. Dhondt, *The Finite Element Method for Three-Dimensional Thermomechanical Applications*, 2004. The static step is
 geometrically nonlinear (St Venant–Kirchhoff), the frequencies are those about it, with stress stiffening and spin
@@ -18,9 +18,6 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.condense.exported import model
-from ...core.condense.matrix_files import stored
-from ...core.condense.ties import FiniteElements
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
 from ..protocol.interface import CodeError
@@ -118,22 +115,6 @@ def _restrained(forces: Array, places: Index) -> list[str]:
         lines += ["*EQUATION", str(len(terms))]
         lines += [f"{node[k % directions]},{k // directions + 1},{value:.12g}" for k, value in terms]
     return lines
-
-
-def finite_elements(bricks: Bricks, material: Material, name: str = "calculix") -> FiniteElements:
-    """The matrices of a block for condensation: ``*FREQUENCY, SOLVER=MATRIXSTORAGE``, all nodes kept.
-
-    CalculiX's ``*SUBSTRUCTURE GENERATE`` cannot be used: up to version 2.20 it fixes the nodes that are not retained
-    instead of eliminating them. ``segments.between`` detects this.
-
-    Raises:
-        CodeError: ``ccx`` is missing or failed.
-    """
-    places, nodes = numbered(bricks)
-    steps = ["*STEP", "*FREQUENCY,SOLVER=MATRIXSTORAGE", "1", "*END STEP"]
-    with run([*deck(places, nodes, material), *steps]) as folder:
-        stiffness, mass = (stored(folder / f"blade.{kind}") for kind in ("sti", "mas"))
-    return model(stiffness, dict(enumerate(nodes, 1)), mass, name)
 
 
 def numbered(bricks: Bricks) -> tuple[Index, Array]:

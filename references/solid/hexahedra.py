@@ -19,7 +19,6 @@ import scipy.sparse as ss
 from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
-from ...core.condense.ties import FiniteElements
 from ...core.modes import Modes
 from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.cache_last import cache_last
@@ -203,17 +202,6 @@ def _gradient(s: Solid, u: Array) -> Array:
 def freedoms(s: Solid) -> tuple[Array, NDArray[np.intp]]:
     """Points (3n, 3) and directions (3n,) of the solid's displacements."""
     return np.tile(s.nodes, (3, 1)), np.repeat(np.arange(3), len(s.nodes))
-
-
-def lumped(s: Solid) -> Array:
-    """Lumped mass (3n,), kg: row sums, which for 27 nodes is Simpson's rule."""
-    return np.tile(mass(s).sum(axis=1), 3)
-
-
-def finite_elements(bricks: Bricks, material: Material, name: str = "solid") -> FiniteElements:
-    """A block as a model for condensation."""
-    s = solid(bricks, material)
-    return FiniteElements(name, *freedoms(s), tangent(s), lumped(s))
 
 
 def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:

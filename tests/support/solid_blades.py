@@ -12,7 +12,7 @@ from southwell.core.space import spatial as sp
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
 from southwell.references.solid.mesh import Bricks, blade
-from southwell.tests.support.solid_sections import lumped_by_part
+from southwell.tests.support.solid_sections import lumped, lumped_by_part
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -51,8 +51,14 @@ def square_bar(length: float, layers: int, across: int = 2, start: float = 0.0) 
 def cantilever_segment(kind: ties.Kind, count: int = SEGMENTS) -> Segment:
     """A segment of the paper's cantilever, condensed alone; all segments are equal."""
     length = LENGTH / count
-    model = hexahedra.finite_elements(square_bar(length, 4), SQUARE)
+    model = finite_elements(square_bar(length, 4), SQUARE)
     return condensation.segment(model, *(ties.section(model, at(x), f"{x:g} m", kind) for x in (0.0, length)))
+
+
+def finite_elements(bricks: Bricks, material: Material, name: str = "solid") -> ties.FiniteElements:
+    """A block as a model for condensation."""
+    solid = hexahedra.solid(bricks, material)
+    return ties.FiniteElements(name, *hexahedra.freedoms(solid), hexahedra.tangent(solid), lumped(solid))
 
 
 @cache
@@ -82,7 +88,7 @@ def segments_apart(kind: ties.Kind, bricks: Bricks, segments: int = SEGMENTS) ->
     out = []
     for k, (a, b) in enumerate(pairwise(cuts(bricks, segments))):
         part = bricks.part(a, b)
-        model = hexahedra.finite_elements(part, STEEL, f"segment {k}")
+        model = finite_elements(part, STEEL, f"segment {k}")
         ends = (ties.section(model, at(x), f"{x:g} m", kind) for x in part.corners[[0, -1], 0, 0, 0])
         out.append(condensation.segment(model, *ends))
     return out
@@ -104,7 +110,7 @@ def torsion(length: float, kind: ties.Kind | None) -> float:
     margin = 0 if kind else round(CHORD / LAYER)
     x = np.linspace(-margin * LAYER, (layers + margin) * LAYER, layers + 2 * margin + 1)
     bricks = blade(x, CHORD, THICK, across=(6, 2))
-    model = hexahedra.finite_elements(bricks, SQUARE)
+    model = finite_elements(bricks, SQUARE)
     places = (0.0, length) if kind else (x[0], 0.0, length, x[-1])
     tied = [ties.section(model, at(v), f"{v:g} m", kind or "average") for v in places]
     if kind:

@@ -41,15 +41,18 @@ def section_weights(bricks: Bricks, layer: int) -> Array:
     return out
 
 
+def lumped(solid: hexahedra.Solid) -> Array:
+    """Lumped mass (3n,), kg: row sums, which for 27 nodes is Simpson's rule."""
+    return np.tile(hexahedra.mass(solid).sum(axis=1), 3)
+
+
 def lumped_by_part(bricks: Bricks, material: materials.Material, cuts: NDArray[np.intp]) -> Array:
     """(m, 3n) lumped mass of each part of a block, cut at layers of corners ``cuts`` (m+1,) along the span."""
     shape = bricks.lattice().shape[:3]
     out = np.zeros((len(cuts) - 1, 3, *shape))
     for k, (a, b) in enumerate(pairwise(cuts)):
         part = bricks.part(a, b)
-        out[k, :, 2 * a : 2 * b + 1] = hexahedra.lumped(hexahedra.solid(part, material)).reshape(
-            3, *part.lattice().shape[:3]
-        )
+        out[k, :, 2 * a : 2 * b + 1] = lumped(hexahedra.solid(part, material)).reshape(3, *part.lattice().shape[:3])
     return out.reshape(len(cuts) - 1, -1)
 
 

@@ -9,9 +9,9 @@ from southwell.core.blade import Blade, uniform_blade
 from southwell.core.condense import segments, ties
 from southwell.core.modes import Modes
 from southwell.references.solid import hexahedra
-from southwell.references.solid import timoshenko as beam
 from southwell.references.solid.materials import Material
 from southwell.references.solid.mesh import clamped
+from southwell.references.theories import timoshenko as timoshenko_beam
 from southwell.tests.support import solid_blades
 from southwell.tests.support.solid_blades import (
     HUB,
@@ -48,13 +48,27 @@ Array = NDArray[np.float64]
 
 def timoshenko(count: int, material: Material = SQUARE, side: float = SIDE, length: float = LENGTH) -> Array:
     """Exact frequencies (rad/s) of a clamped-free Timoshenko beam of square section, in one plane."""
-    return beam.cantilever(count, material, side, length)
+    second = side**4 / 12
+    return timoshenko_beam.cantilever(
+        count,
+        EI=material.young * second,
+        GA=shear_stiffness(material, side),
+        mass=material.density * side**2,
+        rotary=material.density * second,
+        length=length,
+    )
+
+
+def shear_stiffness(material: Material, side: float) -> float:
+    """κ G A (N) of a square, κ = 10 (1 + ν)/(12 + 11 ν) (G. R. Cowper, J. Appl. Mech. 33 (1966) 335)."""
+    nu = material.poisson
+    return 10 * (1 + nu) / (12 + 11 * nu) * material.lame[1] * side**2
 
 
 def square_beam(material: Material = SQUARE, side: float = SIDE, length: float = LENGTH, hub: float = HUB) -> Blade:
     """The same as a Timoshenko beam for core; St Venant's torsion constant of a square is 0.140577 a⁴."""
     EI, inertia = material.young * side**4 / 12, material.density * side**4 / 12
-    shear = beam.shear_stiffness(material, side)
+    shear = shear_stiffness(material, side)
     stiff = {"EA": material.young * side**2, "GJ": material.lame[1] * 0.1405770 * side**4, "EI_y": EI, "EI_z": EI}
     mass = {"mass": material.density * side**2, "I_y": inertia, "I_z": inertia}
     return uniform_blade("square", length, hub, **stiff, **mass, GA_y=shear, GA_z=shear)
@@ -69,7 +83,7 @@ def twisted_modes(omega: float, coriolis: bool = True) -> Modes:
 @cache
 def twisted_model() -> ties.FiniteElements:
     """The whole blade to condense."""
-    return hexahedra.finite_elements(twisted(), STEEL, "twisted blade")
+    return solid_blades.finite_elements(twisted(), STEEL, "twisted blade")
 
 
 def cuts() -> NDArray[np.intp]:

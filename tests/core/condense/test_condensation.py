@@ -18,7 +18,7 @@ from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.tree.as_mechanism import mechanism
 from southwell.references.solid import hexahedra
-from southwell.tests.support.solid_blades import CHORD, THICK, cantilever_segment, st_venant, torsion
+from southwell.tests.support.solid_blades import CHORD, THICK, cantilever_segment, finite_elements, st_venant, torsion
 from southwell.tests.support.solid_sections import lumped_by_part
 from southwell.tests.support.solids import (
     HUB,
@@ -56,7 +56,7 @@ def tied(model: FiniteElements, kind: ties.Kind, *places: float) -> list[ties.Ti
 def test_average_ties_give_st_venants_tension_and_bending_at_any_length() -> None:
     """EA and EI to rounding for a piece as short as it is wide; shear within 3 % of Cowper's coefficient."""
     for length, layers in ((SIDE, 2), (4 * SIDE, 8)):
-        model = hexahedra.finite_elements(square_bar(length, layers), SQUARE)
+        model = finite_elements(square_bar(length, layers), SQUARE)
         f = np.linalg.inv(segment(model, *tied(model, "average", 0.0, length)).stiffness)
         EA, EI = SQUARE.young * SIDE**2, SQUARE.young * SIDE**4 / 12
         np.testing.assert_allclose(np.diagonal(f)[[0, 4, 5]], length / np.array([EA, EI, EI]), rtol=1e-8)
@@ -69,7 +69,7 @@ def test_the_body_has_the_segments_mass_centre_and_inertia() -> None:
     a, b, length = SIDE, SIDE, 0.3
     mass = SQUARE.density * a * b * length
     moments = mass / 12 * np.array([a * a + b * b, length**2 + a * a, length**2 + b * b])
-    model = hexahedra.finite_elements(square_bar(length, 2), SQUARE)
+    model = finite_elements(square_bar(length, 2), SQUARE)
     found = segment(model, *tied(model, "average", 0.0, length)).inertia
     exact = inertia(mass, moments, [length / 2, 0, 0])
     np.testing.assert_allclose(found, exact, atol=1e-12 * mass)
@@ -203,7 +203,7 @@ def test_segments_have_the_mass_of_the_blade() -> None:
 
 
 def test_models_that_cannot_be_condensed_are_refused() -> None:
-    model = hexahedra.finite_elements(square_bar(0.2, 2), SQUARE, "bar")
+    model = finite_elements(square_bar(0.2, 2), SQUARE, "bar")
     a, b = tied(model, "rigid", 0.0, 0.2)
     n = len(model.directions)
     loose = ss.csr_array(ss.block_diag([model.stiffness, ss.csr_array((1, 1))]))

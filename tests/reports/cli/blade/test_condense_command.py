@@ -69,7 +69,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 def in_house() -> list:
-    model = hexahedra.finite_elements(bricks(), STEEL)
+    model = solid_blades.finite_elements(bricks(), STEEL)
     return solid_blades.segments_in_place(model, bricks(), SEGMENTS)
 
 
