@@ -32,7 +32,7 @@ PAGE = Path(__file__).parents[1] / "docs" / "run-time.md"
 CASE, OMEGA, SWEEP = "park-cantilever", 10.0, tuple(np.linspace(0.0, 30.0, 31).tolist())
 ELEMENTS, COUNT, COMPARED = 50, 10, 6
 CODES = ("pinocchio", "exudyn-ancf", "exudyn-tree", "scikit-fem", "pybmodes")
-CORE, EXACT = "core", "exact-beam"
+CORE, EXACT = "Southwell", "exact-beam"
 SIZES = (50, 500, 5000, 100_000)
 ROUNDS, SWEEPS = 7, 3
 MIN_PEAK = 2**20
@@ -198,25 +198,25 @@ Written by `make bench` with Python {python_version()} and NumPy {np.__version__
 
 The blade is the uniform cantilever of Park et al. (2010) with {ELEMENTS} elements and the {COUNT} lowest modes. It is timed
 from the blade to the modes at one speed ({OMEGA:g} rad/s) and in a sweep of {len(SWEEP)} speeds. Each process has one thread;
-times are medians over rounds in which the codes take turns. *× core* is the time relative to core's with as many elements. The
-error is the largest error of the {COMPARED} lowest frequencies relative to the exact beam, at one speed.
+times are medians over rounds in which the codes take turns. *× Southwell* is the time relative to Southwell's own solver with as
+many elements. The error is the largest error of the {COMPARED} lowest frequencies relative to the exact beam, at one speed.
 
 {_table([_cost(c, core) for c in costs])}
 
 {missing}## At equal accuracy
 
-Each code with {ELEMENTS} elements, and core with the fewest elements whose error is no larger, at most {ELEMENTS}.
+Each code with {ELEMENTS} elements, and Southwell with the fewest elements whose error is no larger, at most {ELEMENTS}.
 
 {_table([_pair(c, as_accurate[c.code]) for c in costs if c is not core])}
 
 ## What is timed
 
-Included: building each code's model, its steady state and its eigenproblem. In a sweep core and scikit-fem build their model
-once, and core starts each speed from the previous ones; the other codes start anew. Excluded: starting the process, importing
-libraries, compilation, reading the blade's file, and estimating the uncertainty. Core is timed on one mesh, as the other codes
-are; `southwell modes` refines the mesh and takes longer.
+Included: building each code's model, its steady state and its eigenproblem. In a sweep Southwell and scikit-fem build their
+model once, and Southwell starts each speed from the previous ones; the other codes start anew. Excluded: starting the process,
+importing libraries, compilation, reading the blade's file, and estimating the uncertainty. Southwell is timed on one mesh, as
+the other codes are; `southwell modes` refines the mesh and takes longer.
 
-## Core with more elements
+## Southwell with more elements
 
 {_table([_growth(g) for g in growth])}
 
@@ -246,9 +246,9 @@ def _cost(cost: Cost, core: Cost) -> dict[str, str]:
     return {
         "code": cost.code,
         "one speed": _ms(cost.single),
-        "× core": f"{cost.single / core.single:.1f}",
+        "× Southwell": f"{cost.single / core.single:.1f}",
         "sweep, per speed": _ms(cost.sweep),
-        "× core in the sweep": f"{cost.sweep / core.sweep:.1f}",
+        "× Southwell in the sweep": f"{cost.sweep / core.sweep:.1f}",
         "error": f"{100 * cost.error:.1g} %",
     }
 
@@ -256,13 +256,13 @@ def _cost(cost: Cost, core: Cost) -> dict[str, str]:
 def _pair(cost: Cost, core: Cost | None) -> dict[str, str]:
     row = {"code": cost.code, "error": f"{100 * cost.error:.1g} %"}
     if core is None:
-        return row | {"core": f"more than {ELEMENTS} elements"}
+        return row | {"Southwell": f"more than {ELEMENTS} elements"}
     return row | {
-        "core": f"{core.elements} elements",
-        "core, one speed": _ms(core.single),
-        "× core": f"{cost.single / core.single:.1f}",
-        "core, sweep": _ms(core.sweep),
-        "× core in the sweep": f"{cost.sweep / core.sweep:.1f}",
+        "Southwell": f"{core.elements} elements",
+        "Southwell, one speed": _ms(core.single),
+        "× Southwell": f"{cost.single / core.single:.1f}",
+        "Southwell, sweep": _ms(core.sweep),
+        "× Southwell in the sweep": f"{cost.sweep / core.sweep:.1f}",
     }
 
 

@@ -75,7 +75,7 @@ class Diagnosis:
             return f"{first}{end}" if first else end
         if self.cause:
             others = "".join(f"; or {described(one.changes)}" for one in self.ties)
-            return f"{first}as core {described(self.cause.changes)} ({self._remainder(self.cause)}){others}"
+            return f"{first}as Southwell's own solver {described(self.cause.changes)} ({self._remainder(self.cause)}){others}"
         hint = f"; {self.indication}" if self.indication else ""
         return f"{first}no known cause of {percent(self.largest)}{hint}"
 

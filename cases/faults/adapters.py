@@ -151,7 +151,7 @@ FAULTS = (
     _adapter("zero frequency", "the lowest frequency is 0", "first −100 %", answered(_zero)),
     _adapter("wide bracket", "wrong by 60 %, with a stated uncertainty of 90 %", "+60 %", answered(_wide)),
     _adapter("crash", "the code's process dies", "no answer", _crashes),
-    _adapter("digits lost", "six digits of a code on core's own discretisation", "1e-6",
+    _adapter("digits lost", "six digits of a code on Southwell's own discretisation", "1e-6",
              answered(_times(1 + 1e-6)), Trial("park-cantilever", (10.0,), ("pinocchio",))),
     Fault("one Gauss point per element", "adapter", "a finite element's matrices are integrated with one point", "factors",
           ((registry, "locate", _found_at("southwell.cases.faults.one_point:CODE", "scikit-fem")),),

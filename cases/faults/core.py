@@ -34,7 +34,7 @@ from .trials import AXIAL, CONED, COUPLED, CROSSED, FAST, HINGED, PARK, PITCHED,
 
 
 def _core(name: str, what: str, size: str, seam: Any, trial: Trial, fast: bool = False) -> Fault:
-    return Fault(name, "core", what, size, (seam,), trial, fast=fast)
+    return Fault(name, "solver", what, size, (seam,), trial, fast=fast)
 
 
 BALANCE = "balance"

@@ -35,7 +35,7 @@ from ..plan.turbine import TurbineSubject
 from ..run.executors import Serial
 from ..verify import matrix
 
-Area = Literal["core", "adapter", "pairing", "uncertainty", "verdict", "reader"]
+Area = Literal["solver", "adapter", "pairing", "uncertainty", "verdict", "reader"]
 
 Seam = tuple[Any, str, Callable[[Any], Any]]
 """A module or class, the name of a function or constant in it, and a function from the right to the faulty object."""
@@ -206,7 +206,7 @@ def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
         with seeded(fault.seams):
             wrong = cells(trial)
     except CaseError as error:  # without core's answer there is no run at all
-        return _control(fault, (f"{trial.case}, core: {error}",))
+        return _control(fault, (f"{trial.case}, Southwell: {error}",))
     return _judged(fault, right, wrong)
 
 

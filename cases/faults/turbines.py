@@ -126,7 +126,7 @@ def _backwards(modes: TurbineModes) -> TurbineModes:
     return replace(modes, shapes=np.concatenate([tower, first, *others[::-1]], axis=1))
 
 
-def _turbine(name: str, what: str, size: str, seams: tuple[Seam, ...], area: Any = "core") -> Fault:
+def _turbine(name: str, what: str, size: str, seams: tuple[Seam, ...], area: Any = "solver") -> Fault:
     return Fault(f"turbine: {name}", area, what, size, seams, TURBINE)
 
 

@@ -124,7 +124,7 @@ class BeamData(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Compare(Struct, frozen=True, forbid_unknown_fields=True):
-    """How closely codes must agree with core on the same mechanism."""
+    """How closely codes must agree with Southwell's own solver on the same mechanism."""
 
     modes: Annotated[int, Meta(ge=1, description="number of modes, from the lowest")]
     target: Annotated[
@@ -133,7 +133,9 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     time_limit: Annotated[
         float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
     ] = 300.0
-    groups: Annotated[Confirmations, Meta(description="number of independent groups that must agree with core")] = 1
+    groups: Annotated[
+        Confirmations, Meta(description="number of independent groups that must agree with Southwell's own solver")
+    ] = 1
     lacking: Annotated[str, Meta(description="reason if no group is required")] = ""
 
 

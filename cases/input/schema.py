@@ -62,7 +62,8 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     groups: Annotated[
         Confirmations | dict[str, Confirmations],
         Meta(
-            description="number of independent groups that must agree with core: a number, or one for each variant by name"
+            description="number of independent groups that must agree with Southwell's own solver: a number, or one for each "
+            "variant by name"
         ),
     ] = 1
     lacking: Annotated[str, Meta(description="reason if no group is required")] = ""
@@ -73,7 +74,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
 
 
 class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
-    """A discretisation of core, usually that of the source, shown in a separate column."""
+    """A discretisation of Southwell's own solver, usually that of the source, shown in a separate column."""
 
     elements: Annotated[int, Meta(ge=1, description="number of elements")]
     mass: Annotated[Literal["consistent", "half_end"], Meta(description="how mass is lumped")]

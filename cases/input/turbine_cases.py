@@ -14,14 +14,16 @@ from .toml import convert, document, finite
 
 
 class TurbineCompare(Struct, frozen=True, forbid_unknown_fields=True):
-    """How closely codes must agree with core on a turbine."""
+    """How closely codes must agree with Southwell's own solver on a turbine."""
 
     modes: Annotated[int, Meta(ge=1, description="number of modes, from the lowest")]
     target: Annotated[float, Meta(gt=0, le=LOOSEST, description="largest relative difference")] = 1e-3
     time_limit: Annotated[
         float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
     ] = 300.0
-    groups: Annotated[Confirmations, Meta(description="number of independent groups that must agree with core")] = 1
+    groups: Annotated[
+        Confirmations, Meta(description="number of independent groups that must agree with Southwell's own solver")
+    ] = 1
 
 
 class TurbineCaseFile(Struct, frozen=True, forbid_unknown_fields=True):

@@ -25,7 +25,7 @@ from .verdict import AGREES, judge
 FINE = 1e-4
 """Relative difference within which independent models should agree after extrapolation."""
 
-Kind = Literal["code", "closed form", "printed source", "coarse source", "core's model", "undeclared"]
+Kind = Literal["code", "closed form", "printed source", "coarse source", "Southwell's model", "undeclared"]
 Standing = Literal["agrees", "coarse", "known difference", "estimate", "open", "disagrees"]
 
 INDEPENDENT: tuple[Kind, ...] = ("code", "closed form", "printed source")
@@ -45,7 +45,7 @@ class Witness:
             the case's), a code that shares something with core, one that does not declare what it shares, or another
             release of a code.
         standing: at the case's target.
-        fine: at ``FINE``; None if not applicable (core's model, too few printed digits).
+        fine: at ``FINE``; None if not applicable (Southwell's model, too few printed digits).
         answers: number of frequencies it gave.
         largest: largest |difference| from core with the same effects, relative.
         target: largest target of its numbers, relative.
@@ -92,7 +92,7 @@ def _witness(name: str, cells: list[Cell], origin: Origin | None, target: float 
 
 def _kind(cell: Cell, origin: Origin | None) -> Kind:
     if cell.shares not in ("nothing", "undeclared") or (origin and CORE in (*_key(origin), origin.sections)):
-        return "core's model"
+        return "Southwell's model"
     if not origin:
         return "undeclared"
     if cell.role == "table":

@@ -35,10 +35,13 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
     target, blade, source = case.text.compare.target, variant.blade, case.text.discretisation
     out = []
     if source:
-        head = Head(variant.name, "core", version("southwell"), "discretisation", target)
+        head = Head(variant.name, "southwell", version("southwell"), "discretisation", target)
         out.append(
             Column(
-                "core, as in the source", felt(source.effects, blade), head, partial(as_in_source, head, blade, source)
+                "Southwell, as in the source",
+                felt(source.effects, blade),
+                head,
+                partial(as_in_source, head, blade, source),
             )
         )
     head = Head(variant.name, PAPER, version("southwell"), "same discretisation", SAME, "everything")

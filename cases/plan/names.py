@@ -9,7 +9,7 @@ from .blade_columns import PAPER
 from .subject import Subject
 from .user_results import UserResults
 
-OURS = ("core", "source's discretisation", PAPER, "closed form", "printed tables")
+OURS = ("southwell", "source's discretisation", PAPER, "closed form", "printed tables")
 """Columns of this package that are not codes, as named in results and in tables."""
 
 

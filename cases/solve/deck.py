@@ -78,7 +78,7 @@ def _widened(cell: Cell, sizes: NDArray[np.float64], mode: int) -> Cell:
     if size <= ACCURACY or cell.difference is None or cell.uncertainty is None:
         return cell
     uncertainty = cell.uncertainty + size
-    why = f"without precone, which changes core's frequency by {unsigned(size)}"
+    why = f"without precone, which changes the frequency of Southwell's own solver by {unsigned(size)}"
     if cell.verdict not in (*AGREES, "fail"):
         return replace(cell, uncertainty=uncertainty, reason=join(cell.reason, why))
     verdict, reason = judge(cell.difference, uncertainty, cell.target)

@@ -16,7 +16,7 @@ from ..reading import comparison
 from ..reading import weights as weighing
 from ..reading.second import read_again
 
-CORE = "core"
+CORE = "southwell"
 
 SHARED = "discretisation shared with Southwell's own solver"
 

@@ -59,7 +59,7 @@ class _Task:
 
     @property
     def label(self) -> str:
-        return f"{self.subject.name} × {self.column.name if self.column else 'core'}"
+        return f"{self.subject.name} × {self.column.name if self.column else 'Southwell'}"
 
 
 def run(

@@ -219,6 +219,7 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
             if wrong.omega == cell.omega and same and m.change is not None:
                 rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):
-                    likeness = f"as core with this fault: {wrong.fault} ({percent(m.change)}; {unsigned(rest)} from it)"
+                    size = f"({percent(m.change)}; {unsigned(rest)} from it)"
+                    likeness = f"as Southwell's own solver with this fault: {wrong.fault} {size}"
                     candidates.append((abs(rest), likeness))
     return min(candidates)[1] if candidates else ""

@@ -38,7 +38,7 @@ MOTIONS: tuple[Motion, ...] = get_args(Motion)
 DIGITS = 9
 """Significant digits of a code that declares none."""
 
-CORE = "core"
+CORE = "Southwell's own solver"
 """An origin in ``Independence`` that is core."""
 
 ADAPTERS = "made by the adapter"

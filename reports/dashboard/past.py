@@ -17,7 +17,7 @@ from ...cases.regression.properties import CHECKED
 from ..shared.summary import WORST_FIRST
 from .data import verdicts
 
-CORE = "core"
+CORE = "Southwell"
 
 
 def of_history(history: History) -> dict[str, Any]:

@@ -125,12 +125,12 @@ MIN_ORIGIN = 1e-3
 
 
 def decks(judgement: Judgement, compared: Sequence[Comparison], width: int) -> Iterator[Table | str]:
-    """Tables of the modes of each operating point beside those of core's turbine, with the parts of the differences."""
+    """Tables of the modes of each operating point beside those of Southwell's turbine, with the parts of the differences."""
     for judged, comparison in zip(judgement.sets, compared, strict=False):
         parts = [name for name in PARTS if any(name in pair.parts for pair in comparison.modes)]
-        head = ("mode", "Hz", "± %", "core Hz", "MAC", "difference %", *(f"{name} %" for name in parts))
+        head = ("mode", "Hz", "± %", "Southwell Hz", "MAC", "difference %", *(f"{name} %" for name in parts))
         rows = [_beside(pair, parts) for pair in comparison.modes]
-        yield from tables(head, rows, width, f"{judged.each.name}: {_rpm(judged)}, beside core's turbine in vacuo")
+        yield from tables(head, rows, width, f"{judged.each.name}: {_rpm(judged)}, beside Southwell's turbine in vacuo")
         origins = [
             (pair.mode.name, pair.origin)
             for pair in comparison.modes
@@ -187,7 +187,7 @@ def _count(n: int, what: str, several: str = "") -> str:
 
 
 def plain(judgement: Judgement, compared: Sequence[Comparison] = ()) -> dict[str, object]:
-    """The judgement as data for JSON; ``compared``: the modes of each operating point beside those of core's turbine."""
+    """The judgement as data for JSON; ``compared``: the modes of each operating point beside those of Southwell's turbine."""
     return {
         "verdict": judgement.verdict,
         "findings": [_plain_finding(finding) for finding in judgement.findings],
@@ -231,7 +231,7 @@ def _plain_comparison(comparison: Comparison) -> dict[str, object]:
         "machine": [
             {
                 "mode": pair.mode.name,
-                "core_frequency_hz": pair.frequency,
+                "southwell_frequency_hz": pair.frequency,
                 "mac": pair.mac,
                 "difference": pair.difference,
                 "parts": pair.parts,

@@ -4,6 +4,7 @@ from collections.abc import Iterable, Sequence
 
 from ...cases.judge.results import PropertyCheck, Run, Verdict
 from ...cases.judge.verdict import percent, unsigned
+from ...cases.solve.properties import CORE
 from ..shared.summary import SYMBOL
 
 STATED: tuple[Verdict, ...] = ("fail", "inconclusive")
@@ -83,7 +84,7 @@ def subject(check: PropertyCheck) -> str:
 
 
 def _solver(code: str) -> str:
-    return "Southwell's own solver" if code == "core" else code
+    return "Southwell's own solver" if code == CORE else code
 
 
 def readings(run: Run, case: str) -> list[dict[str, str]]:
@@ -126,7 +127,7 @@ def models(run: Run, case: str) -> list[dict[str, str]]:
         reason = next((c.reason for c in checks if c.verdict == verdict and c.reason), verdict)
         out.append(
             {
-                "model of": code,
+                "model of": _solver(code),
                 "mass": size(by.get("mass")),
                 "first moments": size(_largest(moments)),
                 "inertia": size(by.get("inertia about the rotor's axis")),

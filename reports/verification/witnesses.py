@@ -30,7 +30,7 @@ def table(run: Run) -> list[dict[str, str]]:
                 "who agrees, group by group": "; ".join(f"({_names(group)})" for group in agreeing),
                 f"also within {unsigned(FINE)}": _names([w for w in counted if w.fine == "agrees"]),
                 "confirms the implementation only": _names(
-                    [w for w in rest if w.kind == "core's model" and w.standing == "agrees"]
+                    [w for w in rest if w.kind == "Southwell's model" and w.standing == "agrees"]
                 ),
                 "not counted": ", ".join(
                     f"{w.name} ({w.standing if w.standing != 'agrees' else w.kind}, to {unsigned(w.target)})"

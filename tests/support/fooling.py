@@ -143,4 +143,4 @@ def _backwards(modes: Modes) -> Modes:
 GHOSTS = Fooling("ghosts", _ghosts)
 WANDERING = Fooling("wandering", _wandering, order=2)
 BACKWARDS = Fooling("backwards", _backwards, order=2)
-NAMED_CORE = Fooling("core")
+NAMED_CORE = Fooling("southwell")

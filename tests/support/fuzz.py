@@ -279,7 +279,7 @@ def _run():
         {"southwell": "0.1"},
         "southwell verify beam",
         (Setting("beam", "A beam", "It shows.", "made up", "rpm", {"length": "1 m"}, 1, "", 1e-3),),
-        (Control("no Coriolis", "core", "leaves it out", "1 %", "beam", 10.0, ("a: flapwise 1",), 0.01),),
+        (Control("no Coriolis", "solver", "leaves it out", "1 %", "beam", 10.0, ("a: flapwise 1",), 0.01),),
         (BudgetEntry("beam", 10.0, "flapwise 1", "discretisation", "lumped mass", 1e-3),),
         (Origin("beam", "a", "e", "t", "r", "s", "q"),),
         plan=(Planned("beam", "a", 1, 2), Planned("beam", "b", 1, 1), Planned("beam", "c", 1, 2)),

@@ -26,7 +26,7 @@ def _cell(mode: int, **changes: Any) -> Cell:
 
 
 def _fault(detected_by: tuple[str, ...]) -> Control:
-    return Control("cat", "core", "eats the bird", "all of it", "canary", 10.0, detected_by)
+    return Control("cat", "solver", "eats the bird", "all of it", "canary", 10.0, detected_by)
 
 
 BEFORE = Run((_cell(1), _cell(2), _cell(3)), controls=(_fault(("bird",)),))

@@ -142,7 +142,7 @@ function viewer() {
   show();
   picture.play(playing);
   block.append(make("div", { class: "filters" }, button, modes, speeds), canvas,
-    make("p", { class: "muted" }, `Core's shapes about the steady state, of ${shapes.elements} elements: their frequencies are not yet the converged ones above. Amplitude, chord and both rates are not to scale; thick: the leading edge. Upwards: the rotor's axis.`),
+    make("p", { class: "muted" }, `Southwell's shapes about the steady state, of ${shapes.elements} elements: their frequencies are not yet the converged ones above. Amplitude, chord and both rates are not to scale; thick: the leading edge. Upwards: the rotor's axis.`),
     along, make("p", { class: "muted" }, "Displacements in the hub's axes over the largest of them, each at the moment when it is largest."));
   return block;
 }

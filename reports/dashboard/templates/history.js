@@ -52,7 +52,7 @@ function between() {
     for (const c of all) {
       const key = JSON.stringify([c.cell[CASE], c.cell[OMEGA], c.cell[MODE], c.cell[WHAT]]);
       if (c.moved) put(c.cell[CODE], key, c, c.code);
-      if (c.shifted) put("core", key, c, c.core);
+      if (c.shifted) put("Southwell", key, c, c.core);
       if (c.gone || c.fresh) put(c.cell[CODE], null, c);
       if (c.judged) put(c.cell[CODE], null, { gone: 0, fresh: 0 }).judged += 1;
     }
@@ -86,8 +86,8 @@ function steps() {
 function latest() {
   const [step] = [...DATA.steps].sort((a, b) => b.run - a.run || b.count - a.count);
   if (!step) return {};
-  const cell = DATA.cells.find((c) => c[CASE] === step.case && c[MODE] === step.mode && c[OMEGA] === step.omega && c[WHAT] === step.what && (c[CODE] === step.who || step.who === "core"));
-  return { case: step.case, code: cell[CODE], number: `${step.who === "core" ? "d" : "f"} mode ${placed(cell)}` };
+  const cell = DATA.cells.find((c) => c[CASE] === step.case && c[MODE] === step.mode && c[OMEGA] === step.omega && c[WHAT] === step.what && (c[CODE] === step.who || step.who === "Southwell"));
+  return { case: step.case, code: cell[CODE], number: `${step.who === "Southwell" ? "d" : "f"} mode ${placed(cell)}` };
 }
 
 function numbers() {

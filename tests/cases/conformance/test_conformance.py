@@ -47,9 +47,9 @@ class Core(BladeAdapter):
     refused: Callable[[Blade], str | None] = lambda _: None
     solved: Callable[[Blade], str | None] = lambda _: None
     kept: Effects = ALL_EFFECTS
-    name: str = "core"
+    name: str = "southwell"
     title: str = "Core"
-    independence: Independence = Independence("core", CORE, "core")  # noqa: RUF009
+    independence: Independence = Independence("Southwell", CORE, "Southwell")  # noqa: RUF009
     effects: Effects = ALL_EFFECTS
     levels: tuple[int, ...] = (8, 12, 18)
     order: int = 4

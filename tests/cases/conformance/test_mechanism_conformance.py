@@ -32,7 +32,7 @@ class Core(MechanismAdapter):
     given: Callable[[mb.Mechanism], mb.Mechanism] = lambda mechanism: mechanism
     returned: Callable[[MechanismModes], MechanismModes] = lambda modes: modes
     refused: Callable[[mb.Mechanism], str | None] = lambda _: None
-    name: str = "core"
+    name: str = "southwell"
     title: str = "Core"
     effects: Effects = ALL_EFFECTS
     hint: str = ""

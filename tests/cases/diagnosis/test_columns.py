@@ -32,7 +32,7 @@ def cells() -> list[Cell]:
 def test_a_failing_column_is_diagnosed_from_its_cells() -> None:
     found = diagnosed(BLADE, cells())
     assert found.known
-    assert found.sentence.startswith("as core without hub radius (remains 0.000")
+    assert found.sentence.startswith("as Southwell's own solver without hub radius (remains 0.000")
     assert found.causes[0].startswith("without hub radius: explains 100 %")
     assert any(line.startswith("flapwise 1: at rest ") for line in found.modes)
 
@@ -49,10 +49,15 @@ def test_only_failures_and_added_files_are_due() -> None:
 
 def test_the_terminal_and_the_report_show_it() -> None:
     one = Diagnosed(
-        "beam", "code", True, "as core without hub radius (remains 0.0002 %)", ("a", "b"), ("flapwise 1: …",)
+        "beam",
+        "code",
+        True,
+        "as Southwell's own solver without hub radius (remains 0.0002 %)",
+        ("a", "b"),
+        ("flapwise 1: …",),
     )
     run = Run((), diagnoses=(one,))
-    assert diagnoses.lines(run) == ["code: as core without hub radius (remains 0.0002 %)."]
+    assert diagnoses.lines(run) == ["code: as Southwell's own solver without hub radius (remains 0.0002 %)."]
     (row,) = diagnoses.rows(run, "beam")
     assert row["most probable causes"] == "a; b"
     assert diagnoses.rows(run, "other") == []
@@ -62,4 +67,4 @@ def test_the_terminal_and_the_report_show_it() -> None:
 
 def test_a_diagnosis_tolerates_a_mode_that_the_solver_names_otherwise() -> None:
     strange = cell(20.0, 5, "torsion 7", 900.0)
-    assert diagnosed(BLADE, [*cells(), strange]).sentence.startswith("as core without hub radius")
+    assert diagnosed(BLADE, [*cells(), strange]).sentence.startswith("as Southwell's own solver without hub radius")

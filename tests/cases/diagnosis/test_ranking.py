@@ -41,7 +41,7 @@ def test_a_seeded_cause_is_named_and_what_has_no_effect_is_said() -> None:
     wrong = replace(BLADE, hub_radius=0.0)
     given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, PROBLEM.speeds, 40, 4)])
     found = explain(PROBLEM, given)
-    assert found.sentence.startswith("as core without hub radius (remains 0.0000")
+    assert found.sentence.startswith("as Southwell's own solver without hub radius (remains 0.0000")
     assert found.without_effect == ("with precone reversed",)
     assert "without softening" not in found.sentence
 

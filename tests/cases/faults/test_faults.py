@@ -25,7 +25,7 @@ from ...support import counting_canaries, gate_canaries, samples
 def test_the_table_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40
     areas = Counter(f.area for f in ALL)
-    assert set(areas) == {"core", "adapter", "pairing", "uncertainty", "verdict", "reader"}
+    assert set(areas) == {"solver", "adapter", "pairing", "uncertainty", "verdict", "reader"}
     assert len(FAST) == 7
     assert all(f.what and f.size and f.seams for f in ALL)
     assert all(f.trial or f.blinds for f in ALL)
@@ -144,7 +144,7 @@ def test_faults_are_chosen_by_name() -> None:
 
 def control(**changes: object) -> Control:
     fields: dict = {
-        "control": "no hub radius", "area": "core", "what": "it lies on the axis", "size": "−3 %", "case": "beam",
+        "control": "no hub radius", "area": "solver", "what": "it lies on the axis", "size": "−3 %", "case": "beam",
         "omega": 10.0, "detected_by": ("beam, exact-beam: fail",), "change": 0.03,
     }  # fmt: skip
     return Control(**{**fields, **changes})

@@ -21,7 +21,7 @@ from southwell.references.protocol.description import Description
 from ...support import decks
 
 BLADE = uniform_blade("beam", 6.0, 0.6, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=1.2)
-CONTROL = Control("no hub radius", "core", "the root is on the axis", "", "beam", 10.0, ())
+CONTROL = Control("no hub radius", "solver", "the root is on the axis", "", "beam", 10.0, ())
 
 
 def users(blade_hub: float = 0.6) -> BladeSubject:

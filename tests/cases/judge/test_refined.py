@@ -31,7 +31,7 @@ def reference() -> Reference:
 
 
 def cells(alter: Callable[[Modes], Modes]) -> list[Cell]:
-    """Of a code that answers as core with three meshes, altered."""
+    """Of a code that answers as Southwell's own solver with three meshes, altered."""
     answers = (mesh_modes(BLADE, OMEGA, n, reference().core.count) for n in (8, 16, 32))
     solved = Refinements(tuple(of_blade(alter(modes)) for modes in answers))
     head = Head("park-cantilever", "a-code", "1", "code", 1e-3, "nothing")

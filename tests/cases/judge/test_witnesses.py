@@ -42,7 +42,7 @@ CLOSED = cell("exact", version="southwell 0.1.0")
 def test_codes_on_cores_model_are_no_independent_witnesses() -> None:
     found = witnesses(run(*OURS), "beam")
     assert [(w.name, w.kind, w.standing, w.fine) for w in found] == [
-        (name, "core's model", "agrees", None) for name in ("twin", "chain")
+        (name, "Southwell's model", "agrees", None) for name in ("twin", "chain")
     ]
     assert groups(found) == []
 
@@ -54,9 +54,9 @@ def test_two_series_of_one_source_are_one_group() -> None:
 
 
 def test_kinds_and_count() -> None:
-    found = witnesses(run(cell("alpha"), CLOSED, *TABLES, *OURS, cell("core", "", role="discretisation")), "beam")
+    found = witnesses(run(cell("alpha"), CLOSED, *TABLES, *OURS, cell("southwell", "", role="discretisation")), "beam")
     assert [w.kind for w in found] == [
-        "code", "closed form", "printed source", "printed source", "core's model", "core's model",
+        "code", "closed form", "printed source", "printed source", "Southwell's model", "Southwell's model",
     ]  # fmt: skip
     assert len(groups(found)) == 3
 

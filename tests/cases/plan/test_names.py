@@ -26,7 +26,7 @@ from ...support.killing import CASE, SUPPORT
             r"code: 'twin' is given twice, by --codes twins:ONE and by --codes twins:TWO",
         ),
         ("a.toml --codes exact-beam,twins:EXACT", r"code: 'exact-beam' is given twice, by --codes exact-beam and by"),
-        ("a.toml --codes twins:CORE", r"code: 'core' is given twice, by this package and by --codes twins:CORE"),
+        ("a.toml --codes twins:CORE", r"code: 'southwell' is given twice, by this package and by --codes twins:CORE"),
     ],
 )
 def test_a_name_given_twice_is_one_line(
@@ -36,7 +36,7 @@ def test_a_name_given_twice_is_one_line(
     shutil.copy(SUPPORT / "counted.py", tmp_path)  # the codes' own processes look in the current folder
     for name in ("a.toml", "b.toml"):
         (tmp_path / name).write_text(CASE)
-    names = {"ONE": "twin", "TWO": "twin", "EXACT": "exact-beam", "CORE": "core"}
+    names = {"ONE": "twin", "TWO": "twin", "EXACT": "exact-beam", "CORE": "southwell"}
     lines = [f"{key} = Counted({name!r})" for key, name in names.items()]
     (tmp_path / "twins.py").write_text("\n".join(["from counted import Counted", *lines]))
     with pytest.raises(SystemExit) as ended:

@@ -151,7 +151,7 @@ def test_a_change_ends_a_run_with_status_1() -> None:
         shares="nothing",
         ordinal=1,
     )
-    row = partial(PropertyCheck, "wing", "core", "1", "invariance")
+    row = partial(PropertyCheck, "wing", "southwell", "1", "invariance")
     wrong = row("stations split", 5.1, 5.0, "rad/s", 0.02, 1e-8, "fail", "stations split: mode 1 changes by +2.00 %")
     run = Run((cell,), property_checks=(wrong,))
     assert summary.status(run) == FAILED

@@ -36,7 +36,7 @@ CELL = Cell(
 RUN = Run(
     cells=(CELL, replace(CELL, mode=0, family="", ordinal=0, value=None, verdict="not run")),
     versions={"some-code": "1.0"},
-    controls=(Control("frozen frame", "core", "", "+31 %", "beam", 10.0, ("some-code",), -0.24),),
+    controls=(Control("frozen frame", "solver", "", "+31 %", "beam", 10.0, ("some-code",), -0.24),),
 )
 MADE = datetime(2026, 2, 3, 4, 5, 6, tzinfo=UTC)
 

@@ -21,8 +21,8 @@ from ...reports.cli.test_cli import southwell
 from .test_history import CELL, RUN
 
 READING = PropertyCheck("beam", "weio", "2.0.0", "reading", "edgewise stiffness", 3.0, 3.0, "N m²", 0.0, 1e-6, "pass")
-MODEL = replace(READING, code="core", quantity="fingerprint", part="mass", unit="kg")
-TURNED = replace(READING, code="core", quantity="invariance", part="section axes turned", unit="rad/s")
+MODEL = replace(READING, code="southwell", quantity="fingerprint", part="mass", unit="kg")
+TURNED = replace(READING, code="southwell", quantity="invariance", part="section axes turned", unit="rad/s")
 CHECKS = (READING, MODEL, TURNED)
 RIGHT = replace(RUN, cells=(CELL,), property_checks=CHECKS)
 EXCHANGED = replace(READING, value=30.0, difference=0.9, verdict="fail", reason="edgewise stiffness: reader 30, weio 3")

@@ -77,7 +77,7 @@ def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: St
 
 def trial(detected_by: tuple[str, ...]) -> list[Control]:
     CALLS.append(detected_by)
-    return [Control("wrong sign", "core", "reverses a sign", "1 %", "beam", 1.0, detected_by)]
+    return [Control("wrong sign", "solver", "reverses a sign", "1 %", "beam", 1.0, detected_by)]
 
 
 def test_a_fault_that_was_not_detected_is_tried_again(kept: Store) -> None:

@@ -179,7 +179,7 @@ def test_a_copy_of_core_is_recognised_by_its_digits() -> None:
     assert {c.shares for c in cells} == {"discretisation"}
     assert all("its discretisation, not independent" in c.reason for c in cells)
     (witness,) = [w for w in witnesses(found, PARK) if w.name == "copy"]
-    assert witness.kind == "core's model"
+    assert witness.kind == "Southwell's model"
 
 
 def test_a_copy_is_recognised_although_one_speed_is_converged() -> None:

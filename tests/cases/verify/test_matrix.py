@@ -217,7 +217,7 @@ def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     bad = [c for c in run.cells if c.omega == 1600]
     assert {(c.code, c.verdict, c.mode) for c in bad} == {
         (PAPER, "fail", 0),
-        ("core", "fail", 0),
+        ("southwell", "fail", 0),
         ("good", "fail", 0),
         ("absent", "not run", 0),
     }

@@ -316,7 +316,7 @@ def test_a_mechanism_is_confirmed_by_independent_groups() -> None:
         subject = mechanism.subject(library.mechanism(name))
         run = matrix.run([subject], describe(tuple(MECHANISM_CODES)), seeding.Serial(), parts=False)
         found = {w.name: w.kind for w in witnesses.witnesses(run, name)}
-        assert found["exudyn-loops"] == "core's model"
+        assert found["exudyn-loops"] == "Southwell's model"
         if any(not c.version for c in run.cells):
             pytest.skip("not every code is installed")
         assert [[w.name for w in group] for group in witnesses.groups(witnesses.witnesses(run, name))] == [

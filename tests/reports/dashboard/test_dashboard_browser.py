@@ -331,7 +331,7 @@ def test_the_history(tab: Any, site: Path) -> None:
     assert "cut short: line 8 of the file" in tab.locator("main").inner_text()
     assert tab.locator("#runs tbody tr").count() == 7
     steps = tab.locator("#steps tbody tr").all_inner_texts()
-    assert [re.split(r"\s*\t\s*", s)[1] for s in steps] == ["core", "scikit-fem"]
+    assert [re.split(r"\s*\t\s*", s)[1] for s in steps] == ["Southwell", "scikit-fem"]
     assert "scikit-fem 12 → 13" in steps[1]
     gone = tab.locator("#who tbody tr").all_inner_texts()  # from the sixth to the seventh
     answers = [c for c in run().cells if c.code == LOST and c.value]
@@ -346,7 +346,7 @@ def test_the_history(tab: Any, site: Path) -> None:
     tab.select_option("select[name=from]", "4")
     tab.select_option("select[name=to]", "5")
     (moved,) = tab.locator("#who tbody tr").all_inner_texts()
-    assert moved.startswith("core")
+    assert moved.startswith("Southwell")
     assert "+1.00e-5" in moved
     tab.locator("#moved summary").first.click()
     assert tab.locator("#cells tbody tr").count() > 10

@@ -101,7 +101,7 @@ def test_the_answer_is_no_better_than_its_gravest_cell(verdicts: list[str], says
         ([samples.cell()], {"unfinished": "interrupted"}, "Open: the run was stopped before its end."),
         (
             [samples.cell()],
-            {"controls": (Control("no hub radius", "core", "", "", "beam", 1.0, ()),)},
+            {"controls": (Control("no hub radius", "solver", "", "", "beam", 1.0, ()),)},
             "Open: 1 seeded fault is not detected.",
         ),
         (
@@ -139,7 +139,7 @@ def test_the_papers_table_is_one_line_that_counts_the_values_it_rounds_to() -> N
             for k, (f, half) in enumerate(printed, 1)
         ),
         *(
-            samples.cell(**given, code="core", role="discretisation", mode=k, ordinal=k, value=f)
+            samples.cell(**given, code="southwell", role="discretisation", mode=k, ordinal=k, value=f)
             for k, f in enumerate(solved, 1)
         ),
     ]
@@ -322,7 +322,7 @@ def test_the_exit_status_is_0_only_if_all_is_within_target_or_explained(verdicts
 def test_the_exit_status_needs_groups_controls_and_a_foreign_answer() -> None:
     """One passing code is enough only if no more groups are required, every fault is detected, and it is not core."""
     alone = Run((samples.cell(shares="nothing"),))
-    fault = Control("frozen frame", "core", "", "+31 %", "beam", 10.0, ("alpha: edgewise 1",), -0.24)
+    fault = Control("frozen frame", "solver", "", "+31 %", "beam", 10.0, ("alpha: edgewise 1",), -0.24)
     two = Setting("beam", "", "", "", "rad_s", groups=2)
     assert summary.status(alone) == 0
     assert summary.status(replace(alone, controls=(fault,))) == 0
