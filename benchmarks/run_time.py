@@ -198,8 +198,8 @@ Written by `make bench` with Python {python_version()} and NumPy {np.__version__
 
 The blade is the uniform cantilever of Park et al. (2010) with {ELEMENTS} elements and the {COUNT} lowest modes. It is timed
 from the blade to the modes at one speed ({OMEGA:g} rad/s) and in a sweep of {len(SWEEP)} speeds. Each process has one thread;
-times are medians over rounds in which the codes take turns. *× Southwell* is the time relative to Southwell's own solver with as
-many elements. The error is the largest error of the {COMPARED} lowest frequencies relative to the exact beam, at one speed.
+times are medians over rounds in which the codes take turns. *× Southwell* is the time relative to Southwell's own solver with
+as many elements. The error is the largest error of the {COMPARED} lowest frequencies relative to the exact beam, at one speed.
 
 {_table([_cost(c, core) for c in costs])}
 
