@@ -11,7 +11,7 @@ from .tables import TOO_NEAR, Sheet
 TITLE = "Independent confirmation"
 
 
-def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
+def sheet(diagram: Campbell, confirmed: Sequence[Confirmed], units: Units) -> Sheet:
     """The table: one row per mode and speed with the frequency ± u and the codes that confirm it."""
     rows = tuple(
         (
@@ -21,10 +21,12 @@ def sheet(diagram: Campbell, found: Sequence[Confirmed], units: Units) -> Sheet:
             ", ".join(row.codes) or f"{TOO_NEAR} none",
             f"{100 * row.difference:.2g} %" if row.codes else "–",
         )
-        for row in found
+        for row in confirmed
     )
     rest = dict.fromkeys(
-        f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}" for r in found if r.others
+        f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}"
+        for r in confirmed
+        if r.others
     )
     note = (
         "± is the numerical uncertainty of Southwell's own solver; codes are those that share nothing with it and agree within "

@@ -41,29 +41,29 @@ def cover(origin: Origin) -> str:
     Raises:
         OSError: if a file cannot be read.
     """
-    found = [{"": "origin", "value": "<br>".join(map(markdown.plain, origin.about))}] if origin.about else []
-    found += [
+    items = [{"": "origin", "value": "<br>".join(map(markdown.plain, origin.about))}] if origin.about else []
+    items += [
         {"": "file", "value": f"{markdown.plain(path.name)}, SHA-256 `{sha256(read_bytes(path)).hexdigest()}`"}
         for path in origin.files
     ]
     if origin.unused:
-        found.append({"": "not used", "value": f"{len(origin.unused)} non-zero quantities, listed below"})
+        items.append({"": "not used", "value": f"{len(origin.unused)} non-zero quantities, listed below"})
     libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
-    found.append({"": "computed", "value": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"})
+    items.append({"": "computed", "value": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"})
     program = f"southwell {version('southwell')}, Python {platform.python_version()}, {libraries}"
-    found.append({"": "program", "value": f"{program}; {this_machine()}"})
-    return f"## Input\n\n{markdown.table(found)}\n"
+    items.append({"": "program", "value": f"{program}; {this_machine()}"})
+    return f"## Input\n\n{markdown.table(items)}\n"
 
 
 def properties(blade: Blade) -> str:
     """The sections on the blade's properties: facts with the conventions they follow, figure, and a table along the span."""
-    known = [{"": name, "value": markdown.plain(text)} for name, text in facts(blade).items() if text]
+    conventions = [{"": name, "value": markdown.plain(text)} for name, text in facts(blade).items() if text]
     values = rows(blade, sections(blade))
     some = picked(len(values))
     along = [{COLUMNS[k]: cell(k, float(row[k])) for k in range(PROPERTIES)} for row in values[some]]
     note = "" if len(some) == len(values) else f"\n{len(some)} of {len(values)} stations.\n"
     return (
-        f"## Blade and conventions\n\n{markdown.table(known)}\n\n## Properties along the span\n\n"
+        f"## Blade and conventions\n\n{markdown.table(conventions)}\n\n## Properties along the span\n\n"
         f"![Properties along the span](span.svg)\n\n{markdown.table(along)}\n{note}"
     )
 

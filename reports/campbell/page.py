@@ -110,8 +110,8 @@ def _page(diagram: Campbell, k: int, units: Units, command: str, origin: Origin,
 def _elastodyn(diagram: Campbell, k: int, units: Units) -> str:
     omega = float(diagram.tracks.omega[k])
     try:
-        found = polynomials(diagram.blade, omega, diagram.request.elements)
+        fitted = polynomials(diagram.blade, omega, diagram.request.elements)
     except CaseError as error:
         return f"## ElastoDyn mode shapes\n\nNone: {error}.\n"
     other = as_it_is(diagram.blade, diagram.tracks.solved[k])
-    return tables.markdown(shapes.coefficients(found, other, units, omega))
+    return tables.markdown(shapes.coefficients(fitted, other, units, omega))

@@ -14,16 +14,16 @@ from ..shared.units import Units
 
 def draw(axes: Axes, user_results: Sequence[UserResults], blade: str, units: Units) -> None:
     """Draw the points of each file; measured points have bars of two standard uncertainties."""
-    for k, one in enumerate(user_results):
-        mine = _of(one, blade)
-        bars = [COVERAGE * (r.value.uncertainty or 0.0) * r.value.value * units.frequencies for r in mine]
+    for k, results in enumerate(user_results):
+        points = _of(results, blade)
+        bars = [COVERAGE * (r.value.uncertainty or 0.0) * r.value.value * units.frequencies for r in points]
         axes.errorbar(
-            [r.omega * units.speeds for r in mine],
-            [r.value.value * units.frequencies for r in mine],
-            yerr=bars if one.measured else None,
+            [r.omega * units.speeds for r in points],
+            [r.value.value * units.frequencies for r in points],
+            yerr=bars if results.measured else None,
             fmt=_marker(k),
             ms=4.5,
-            mfc=INK if one.measured else "white",
+            mfc=INK if results.measured else "white",
             color=INK,
             elinewidth=0.9,
             capsize=2.0,
@@ -41,24 +41,24 @@ def legend(user_results: Sequence[UserResults], blade: str) -> list[Line2D]:
             marker=_marker(k),
             ms=4.5,
             color=INK,
-            mfc=INK if one.measured else "white",
-            label=f"{one.name}, measured, ± 2 u_D" if one.measured else one.name,
+            mfc=INK if results.measured else "white",
+            label=f"{results.name}, measured, ± 2 u_D" if results.measured else results.name,
         )
-        for k, one in enumerate(user_results)
-        if _of(one, blade)
+        for k, results in enumerate(user_results)
+        if _of(results, blade)
     ]
 
 
 def outside(user_results: Sequence[UserResults], diagram: Campbell, top: float) -> str:
     """How many points lie outside the diagram's speeds or above ``top`` (rad/s), as text; empty if none do."""
     low, high = diagram.request.speeds[0], diagram.request.speeds[-1]
-    every = [r for one in user_results for r in _of(one, diagram.blade.name)]
+    every = [r for results in user_results for r in _of(results, diagram.blade.name)]
     n = sum(r.omega < low - r.slack or r.omega > high + r.slack or r.value.value > top for r in every)
     return f"{n} of {len(every)} added points outside" if n else ""
 
 
-def _of(one: UserResults, blade: str) -> list[Given]:
-    return [row for row in one.rows if row.blade in ("", blade)]
+def _of(results: UserResults, blade: str) -> list[Given]:
+    return [row for row in results.rows if row.blade in ("", blade)]
 
 
 def _marker(k: int) -> str:

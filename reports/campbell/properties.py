@@ -55,16 +55,16 @@ def facts(blade: Blade) -> dict[str, str]:
     }
 
 
-def _body(found: Mass) -> str:
-    (x, y, z), own = found.centre + 0.0, found.own
+def _body(body: Mass) -> str:
+    (x, y, z), own = body.centre + 0.0, body.own
     moments = ", ".join(f"{k:.5g}" for k in np.where(np.abs(own) < 1e-9 * np.abs(own).max(), 0.0, own).diagonal())
     return f"centre x {x:.5g}, y {y:.5g}, z {z:.5g} m from the tip; moments of inertia about it {moments} kg m²; section axes"
 
 
-def rows(blade: Blade, found: Sections) -> Array:
+def rows(blade: Blade, sampled: Sections) -> Array:
     """(n, columns) numbers of all stations, columns as in ``COLUMNS``."""
-    stiff = (blade.mass[:, 0, 0], found.EI_flap, found.EI_edge, found.GJ, found.EA, np.degrees(blade.twist))
-    return np.column_stack([blade.stations, *stiff, found.mass_centre, found.tension_centre, found.shear_centre])
+    stiff = (blade.mass[:, 0, 0], sampled.EI_flap, sampled.EI_edge, sampled.GJ, sampled.EA, np.degrees(blade.twist))
+    return np.column_stack([blade.stations, *stiff, sampled.mass_centre, sampled.tension_centre, sampled.shear_centre])
 
 
 def picked(stations: int, most: int | None = ROWS) -> NDArray[np.intp]:

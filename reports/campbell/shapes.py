@@ -45,8 +45,8 @@ def scaled(diagram: Campbell, k: int, arm: float = 0.0) -> tuple[list[int], Comp
     the rotation times ``arm`` (m).
     """
     tracks = diagram.tracks
-    there = np.flatnonzero(tracks.place[k] >= 0)
-    order = there[np.argsort(tracks.place[k, there])]
+    tracked = np.flatnonzero(tracks.place[k] >= 0)
+    order = tracked[np.argsort(tracks.place[k, tracked])]
     shapes = in_blade_axes(tracks.solved[k], diagram.blade)[tracks.place[k, order]]
     motions = shapes * [1.0, 1.0, 1.0, arm]
     farthest = np.abs(motions).reshape(len(order), -1).argmax(1)
@@ -157,10 +157,10 @@ def _degrees(axes: Axes, arm: float) -> None:
     right.tick_params(colors=FAMILY_COLOURS["torsion"], labelsize=7.5)
 
 
-def coefficients(found: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
+def coefficients(fitted: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
     """The table of ElastoDyn's coefficients: of the principal blade, and for comparison of the unchanged blade."""
     rows = []
-    for kind, group in (("for ElastoDyn", found), ("of the given blade", other)):
+    for kind, group in (("for ElastoDyn", fitted), ("of the given blade", other)):
         for p in group:
             numbers = [f"{c:.6f}".replace("-", "−") for c in p.coefficients]
             frequency = certain(p.frequency * units.frequencies, p.uncertainty)

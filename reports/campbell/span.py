@@ -21,15 +21,15 @@ DECADES = 30.0
 
 def draw(blade: Blade) -> Figure:
     """Draw six panels over the arc length, one quantity each; rigid stiffness is labelled, not drawn."""
-    found = sections(blade)
+    sampled = sections(blade)
     y, z = (blade.curve[:, k] for k in (1, 2))
-    stiffness: Lines = [("flap EI", found.EI_flap), ("edge EI", found.EI_edge), ("torsion GJ", found.GJ)]
+    stiffness: Lines = [("flap EI", sampled.EI_flap), ("edge EI", sampled.EI_edge), ("torsion GJ", sampled.GJ)]
     panels: list[tuple[str, str, Lines, bool]] = [
         ("Mass", "kg/m", [("", blade.mass[:, 0, 0])], False),
         ("Stiffness", "N m²", stiffness, True),
-        ("Axial stiffness EA", "N", [("", found.EA)], True),
+        ("Axial stiffness EA", "N", [("", sampled.EA)], True),
         ("Twist", "degrees, y towards z", [("", np.degrees(blade.twist))], False),
-        ("Centres, towards the leading edge", "m from the reference axis", _centres(found, 0), False),
+        ("Centres, towards the leading edge", "m from the reference axis", _centres(sampled, 0), False),
         (
             "Reference axis",
             "m from the blade's axis",
@@ -51,8 +51,8 @@ def draw(blade: Blade) -> Figure:
     return figure
 
 
-def _centres(found: Sections, k: int) -> Lines:
-    return [(name, getattr(found, f"{name}_centre")[:, k]) for name in ("mass", "tension", "shear")]
+def _centres(sampled: Sections, k: int) -> Lines:
+    return [(name, getattr(sampled, f"{name}_centre")[:, k]) for name in ("mass", "tension", "shear")]
 
 
 def _finite(lines: Lines) -> Array:

@@ -110,8 +110,8 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
     low, high = request.operating
     rows = []
     for t in range(diagram.tracks.count):
-        mine = {m.per_rev: m for m in diagram.margins if m.track == t}
-        fields = [_margin(mine[n], request.margin) if mine else "not tracked to here" for n in request.per_rev]
+        margins = {m.per_rev: m for m in diagram.margins if m.track == t}
+        fields = [_margin(margins[n], request.margin) if margins else "not tracked to here" for n in request.per_rev]
         rows.append((diagram.labels.over(t, low, high), *fields))
     unit = request.margin.unit
     measure = f"in {unit}" if unit else "in % of n per revolution (far: 1000 % or more)"
@@ -244,7 +244,7 @@ def _part(sheet: Sheet, part: Sequence[int], first: bool) -> Table:
 def _styled(field: str) -> str:
     if field.startswith(TOO_NEAR):
         return f"[bold red]{field}[/]"
-    return _MODE.sub(lambda found: f"[{STYLES[found[1]]}]{found[0]}[/]", field)
+    return _MODE.sub(lambda name: f"[{STYLES[name[1]]}]{name[0]}[/]", field)
 
 
 def markdown(sheet: Sheet) -> str:
@@ -301,9 +301,9 @@ def verdict(diagram: Campbell, units: Units) -> str:
         return f"{every} stays at least {request.margin} away from every n per revolution at {over}.{but}"
     said = []
     for t in dict.fromkeys(m.track for m in broken):
-        mine = [m for m in broken if m.track == t]
-        met = ", ".join(f"{m.per_rev}P" for m in mine if m.least == 0.0)
-        near = ", ".join(f"{m.per_rev}P" for m in mine if m.least != 0.0)
+        margins = [m for m in broken if m.track == t]
+        met = ", ".join(f"{m.per_rev}P" for m in margins if m.least == 0.0)
+        near = ", ".join(f"{m.per_rev}P" for m in margins if m.least != 0.0)
         words = [
             f"crosses {met}" if met else "",
             f"comes within {request.margin} of {near}" if near else "",

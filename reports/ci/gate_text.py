@@ -31,41 +31,41 @@ ByCase = Mapping[str, Units]
 """Units by case; rad/s for cases that are not in it."""
 
 
-def verdict(found: Comparison, strict: bool) -> str:
+def verdict(gate: Comparison, strict: bool) -> str:
     """One line: passed or failed, and why."""
     counts = {
-        "worse": len(found.worse),
-        "with a wider target": len(found.loosened),
-        "gone": len(found.gone),
-        "seeded faults no longer detected": len(found.undetected),
-        "seeded faults missed": len(found.missed),
-        "properties wrong or no longer checked": len(found.properties),
-        "moved": len(found.moved),
-        "better": len(found.better),
-        "new": len(found.new),
+        "worse": len(gate.worse),
+        "with a wider target": len(gate.loosened),
+        "gone": len(gate.gone),
+        "seeded faults no longer detected": len(gate.undetected),
+        "seeded faults missed": len(gate.missed),
+        "properties wrong or no longer checked": len(gate.properties),
+        "moved": len(gate.moved),
+        "better": len(gate.better),
+        "new": len(gate.new),
     }
     moved = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
-    moved += f"; {found.measured} measured, not judged" if found.measured else ""
-    sign = "✔ gate passed" if found.passed(strict) else "✘ gate failed"
-    return f"{sign}: {len(found.after.cells)} cells against {_named(found.before)}: {moved}"
+    moved += f"; {gate.measured} measured, not judged" if gate.measured else ""
+    sign = "✔ gate passed" if gate.passed(strict) else "✘ gate failed"
+    return f"{sign}: {len(gate.after.cells)} cells against {_named(gate.before)}: {moved}"
 
 
 def _named(entry: Entry) -> str:
     return f"{entry.commit} ({entry.date})" if entry.date else entry.commit
 
 
-def sections(found: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
+def sections(gate: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
     """Title and rows of each non-empty table; those that can fail the gate come first."""
     every = [
-        ("Worse", [_change(c, units) for c in found.worse]),
-        ("Wider target than before", [_loosened(c, units) for c in found.loosened]),
-        ("Gone", _gone(found.gone, units)),
-        ("Seeded faults that are no longer detected, or not tried", [_undetected(c, units) for c in found.undetected]),
-        ("Required seeded faults that are not detected", [{"fault": name} for name in found.missed]),
-        ("Properties that are wrong or no longer checked", [_property(c) for c in found.properties]),
-        ("Moved", [_change(c, units) for c in found.moved]),
-        ("Better", [_change(c, units) for c in found.better]),
-        ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in found.versions.items()]),
+        ("Worse", [_change(c, units) for c in gate.worse]),
+        ("Wider target than before", [_loosened(c, units) for c in gate.loosened]),
+        ("Gone", _gone(gate.gone, units)),
+        ("Seeded faults that are no longer detected, or not tried", [_undetected(c, units) for c in gate.undetected]),
+        ("Required seeded faults that are not detected", [{"fault": name} for name in gate.missed]),
+        ("Properties that are wrong or no longer checked", [_property(c) for c in gate.properties]),
+        ("Moved", [_change(c, units) for c in gate.moved]),
+        ("Better", [_change(c, units) for c in gate.better]),
+        ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in gate.versions.items()]),
     ]
     return [(title, rows) for title, rows in every if rows]
 
@@ -155,47 +155,47 @@ def _property(change: PropertyChange) -> Row:
     }
 
 
-def tables(found: Comparison, units: ByCase, width: int) -> Iterator[RenderableType]:
+def tables(gate: Comparison, units: ByCase, width: int) -> Iterator[RenderableType]:
     """All tables for a console of ``width`` characters, each cut after ``SHOWN`` rows with the number of further ones."""
-    for title, every in sections(found, units):
+    for title, every in sections(gate, units):
         heads, rows = list(every[0]), [list(row.values()) for row in every[:SHOWN]]
         if len(every) > SHOWN:
             title += f": the first {SHOWN} of {len(every)}"
         yield from table_columns.tables(heads, rows, width, title)
 
 
-def markdown(found: Comparison, strict: bool, units: ByCase) -> str:
+def markdown(gate: Comparison, strict: bool, units: ByCase) -> str:
     """Verdict and tables as Markdown for a job's summary; tables longer than ``ROWS`` are cut, with a note."""
-    blocks = [f"**{plain(verdict(found, strict))}**"]
-    for title, rows in sections(found, units):
+    blocks = [f"**{plain(verdict(gate, strict))}**"]
+    for title, rows in sections(gate, units):
         shown = [{head: plain(value) for head, value in row.items()} for row in rows[:ROWS]]
         cut = f"\n\n… and {len(rows) - ROWS} more: see the log." if len(rows) > ROWS else ""
         blocks.append(f"#### {title}\n\n{table(shown)}{cut}")
     return "\n\n".join(blocks) + "\n"
 
 
-def annotations(found: Comparison, folder: Path, units: ByCase) -> list[str]:
+def annotations(gate: Comparison, folder: Path, units: ByCase) -> list[str]:
     """GitHub workflow commands for the files of cases.
 
     An error for each case and code that got worse, a warning for each that still fails; one each, because GitHub shows
     only ten per step. Case files are searched in ``folder``.
     """
     files = case_files(folder)
-    worse = {c.after.key for c in found.worse}
-    standing = [p for p in found.after.cells if RANK.get(p.verdict, 0) >= MISS and p.key not in worse]
+    worse = {c.after.key for c in gate.worse}
+    standing = [p for p in gate.after.cells if RANK.get(p.verdict, 0) >= MISS and p.key not in worse]
     rows = [
-        ("error", p.case, text) for p, text in _by_column([(c.after, _became(c, units)) for c in found.worse], units)
+        ("error", p.case, text) for p, text in _by_column([(c.after, _became(c, units)) for c in gate.worse], units)
     ]
     rows += [
         ("error", r["case"], f"{r['code']}: {r['answers']} answers missing, now {r['now']}")
-        for r in _gone(found.gone, units)
+        for r in _gone(gate.gone, units)
     ]
-    for control, case in dict.fromkeys((c.control, c.case) for c in found.undetected):
+    for control, case in dict.fromkeys((c.control, c.case) for c in gate.undetected):
         rows.append(("error", case, f"{control}: a seeded fault that is no longer detected, or not tried"))
-    for case, what in dict.fromkeys((c.check.case, f"{c.check.quantity} by {c.check.code}") for c in found.properties):
+    for case, what in dict.fromkeys((c.check.case, f"{c.check.quantity} by {c.check.code}") for c in gate.properties):
         parts = [
             f"{p.check.part or 'all properties'} ({_property(p)['verdict']})"
-            for p in found.properties
+            for p in gate.properties
             if (p.check.case, f"{p.check.quantity} by {p.check.code}") == (case, what)
         ]
         rows.append(("error", case, f"{what}: {', '.join(parts)}"))
@@ -236,7 +236,7 @@ def _escaped(text: str) -> str:
 
 def case_files(folder: Path) -> dict[str, Path]:
     """Case files in a folder by the name that they define; hidden folders and invalid TOML files are skipped."""
-    found: dict[str, Path] = {}
+    files: dict[str, Path] = {}
     for path in sorted(folder.rglob("*.toml"), key=lambda p: (len(p.parts), p)):
         inside = path.relative_to(folder)
         if any(part.startswith(".") for part in inside.parts):
@@ -246,5 +246,5 @@ def case_files(folder: Path) -> dict[str, Path]:
         except CaseError:
             continue
         if isinstance(name, str):
-            found.setdefault(name, inside)
-    return found
+            files.setdefault(name, inside)
+    return files

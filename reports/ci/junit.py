@@ -20,14 +20,14 @@ SKIPPED = ("not run", "not applicable", "measured")
 """Verdicts without a judgement; their test cases are skipped."""
 
 
-def render(run: Run, found: Comparison | None = None, strict: bool = False) -> bytes:
+def render(run: Run, gate: Comparison | None = None, strict: bool = False) -> bytes:
     """The XML document.
 
     A cell fails if its verdict is a failure or inconclusive, or if the gate found it worse or, with ``strict``, moved.
     Missing answers, and negative controls that are no longer detected, are separate failed test cases. An incomplete
     run adds a first test case with an error.
     """
-    findings = _findings(found, strict) if found else {}
+    findings = _findings(gate, strict) if gate else {}
     root = Element("testsuites", name="southwell")
     if messages := summary.incomplete(run):
         test = _test(SubElement(root, "testsuite", name="the run"), "southwell", "the run is complete")
@@ -39,8 +39,8 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
             _judge(test, cell, findings.get(key(cell), ""))
         for check in (c for c in run.property_checks if c.case == case):
             _check(_test(suite, case, f"{check.quantity} by {check.code}: {check.part or 'no property'}"), check)
-    if found:
-        _regressions(root, found)
+    if gate:
+        _regressions(root, gate)
     for suite in root:
         suite.set("tests", str(len(suite)))
         for kind, name in {"failure": "failures", "error": "errors", "skipped": "skipped"}.items():
@@ -49,28 +49,28 @@ def render(run: Run, found: Comparison | None = None, strict: bool = False) -> b
     return tostring(root, encoding="utf-8", xml_declaration=True)
 
 
-def _findings(found: Comparison, strict: bool) -> dict[Key, str]:
+def _findings(gate: Comparison, strict: bool) -> dict[Key, str]:
     """Findings of the gate on present cells, by cell."""
     messages = {
-        c.after.key: f"worse: {c.before.verdict if c.before else 'not there'} → {c.after.verdict}" for c in found.worse
+        c.after.key: f"worse: {c.before.verdict if c.before else 'not there'} → {c.after.verdict}" for c in gate.worse
     }
-    for c in found.moved if strict else ():
+    for c in gate.moved if strict else ():
         if c.before:
             messages.setdefault(c.after.key, f"moved: {_digits(c.before)} → {_digits(c.after)}")
     return messages
 
 
-def _regressions(root: Element, found: Comparison) -> None:
+def _regressions(root: Element, gate: Comparison) -> None:
     """Add test cases for missing answers and for faults that are no longer detected."""
-    lost = [c for c in found.properties if c.before and c.check.verdict != "fail"]
-    if not (found.gone or found.undetected or lost):
+    lost = [c for c in gate.properties if c.before and c.check.verdict != "fail"]
+    if not (gate.gone or gate.undetected or lost):
         return
     suite = SubElement(root, "testsuite", name="against the earlier run")
-    for gone in found.gone:
+    for gone in gate.gone:
         p: Point = gone.point
         test = _test(suite, p.case, _name(p))
         _failed(test, "gone", f"the answer {_digits(p)} is missing; now {gone.instead or 'nothing'}")
-    for control in found.undetected:
+    for control in gate.undetected:
         _lost(suite, control)
     for change in lost:
         check, now = change.check, change.after.verdict if change.after else "not there"

@@ -72,10 +72,10 @@ class Report:
 
     def pytest_runtest_logreport(self, report: pytest.TestReport) -> None:
         """Keep the result of one test."""
-        found = [str(value) for name, value in report.user_properties if name == PROPERTY]
-        if report.when == "call" and found:
+        parts = [str(value) for name, value in report.user_properties if name == PROPERTY]
+        if report.when == "call" and parts:
             self._begin()
-            self.parts += found
+            self.parts += parts
 
     @pytest.hookimpl(trylast=True)
     def pytest_sessionfinish(self) -> None:
@@ -146,8 +146,8 @@ class Report:
 
         def rows(kind: str, row: Any) -> tuple[Any, ...]:
             """Unique rows: tests of one blade repeat its setting, and the cell of a speed without an answer."""
-            distinct = {msgspec.json.encode(one): one for part in decoded for one in part[kind]}
-            return tuple(msgspec.convert(one, row) for one in distinct.values())
+            distinct = {msgspec.json.encode(entry): entry for part in decoded for entry in part[kind]}
+            return tuple(msgspec.convert(entry, row) for entry in distinct.values())
 
         cells = rows("cells", Cell)
         answered = {(c.case, c.code, c.omega, c.mode) for c in cells}

@@ -70,13 +70,13 @@ def finished(path: Path) -> Run:
         CaseError: if there is none.
         IncompleteError: if it is not complete.
     """
-    run = found(path)
+    run = run_in(path)
     if run.unfinished:
         raise IncompleteError(f"{path}: incomplete: {run.unfinished}: {CONTINUE}")
     return run
 
 
-def found(path: Path) -> Run:
+def run_in(path: Path) -> Run:
     """Read the run in a report's folder, or in its results file; from a folder the latest run, complete or not.
 
     Raises:

@@ -29,9 +29,9 @@ def listing() -> int:
     table = Table(box=box.SIMPLE_HEAD, caption=str(store.path()))
     for head, side in (("code", "left"), ("answers", "right"), ("MB", "right"), ("first", "left"), ("last", "left")):
         table.add_column(head, justify=side)  # pyright: ignore[reportArgumentType]
-    for one in opened.kept():
-        first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when)) for when in (one.first, one.last))
-        table.add_row(one.label, str(one.count), f"{one.size / 1e6:.1f}", first, last)
+    for kept in opened.kept():
+        first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when)) for when in (kept.first, kept.last))
+        table.add_row(kept.label, str(kept.count), f"{kept.size / 1e6:.1f}", first, last)
     console.output().print(table)
     return PASSED
 
@@ -41,7 +41,7 @@ def verify() -> int:
     """Check that every stored answer is as it was written; status 1 if one is not (it would be computed again)."""
     opened = _opened()
     bad = opened.damaged()
-    total = sum(one.count for one in opened.kept())
+    total = sum(kept.count for kept in opened.kept())
     print(f"{total} answers, {len(bad)} damaged")
     return FAILED if bad else PASSED
 

@@ -24,19 +24,19 @@ def command(code: str, /) -> int:
     code
         Name (`southwell codes`), or import path `module:attribute` of an adapter.
     """
-    (known,) = describe([code])
-    if known.failure and known.failure.reason.startswith("import: "):
-        why = known.failure.reason.removeprefix("import: ")
+    (described,) = describe([code])
+    if described.failure and described.failure.reason.startswith("import: "):
+        why = described.failure.reason.removeprefix("import: ")
         raise UnknownCodeError(f"code: {code!r} cannot be loaded: {why}: {ADVICE}")
-    if known.turbines and not (known.blades or known.mechanisms):
+    if described.turbines and not (described.blades or described.mechanisms):
         why = "the checks are for codes that solve blades or mechanisms"
         raise UsageError(f"conform {code}: {why}: run southwell verify nrel-5mw-turbine --codes {code}")
-    checks = (*(CHECKS if known.blades else ()), *(FOR_MECHANISMS if known.mechanisms else ()))
-    found = outcomes(code, checks if not known.failure else CHECKS)
-    rows = [(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law) for outcome in found]
+    checks = (*(CHECKS if described.blades else ()), *(FOR_MECHANISMS if described.mechanisms else ()))
+    results = outcomes(code, checks if not described.failure else CHECKS)
+    rows = [(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law) for outcome in results]
     console = output()
     console.print(*tables(("", "check", "law, or reason"), rows, console.width), sep="\n")
-    tally = Counter(outcome.verdict for outcome in found)
+    tally = Counter(outcome.verdict for outcome in results)
     counted = ", ".join(f"{tally[verdict]} {verdict}" for verdict in MARKS if tally[verdict])
-    console.print(f"{known.title or known.name}: {counted}", markup=False)
+    console.print(f"{described.title or described.name}: {counted}", markup=False)
     return 1 if tally["fail"] or tally["not run"] else 0

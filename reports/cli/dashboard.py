@@ -9,7 +9,7 @@ from ...cases.input.errors import CaseError
 from ..dashboard.write import write
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..shared.summary import incomplete
-from .arguments import found
+from .arguments import run_in
 from .history import load
 
 
@@ -38,7 +38,7 @@ def command(
     names = [folder.name or str(folder.resolve()) for folder in folders]
     if len(set(names)) < len(names):
         names = [str(folder) for folder in folders]
-    runs = {name: found(folder) for name, folder in zip(names, folders, strict=True)}
+    runs = {name: run_in(folder) for name, folder in zip(names, folders, strict=True)}
     for name, run in runs.items():
         if message := incomplete(run):
             print(f"{name}: {message}")

@@ -24,7 +24,7 @@ from ..shared.statuses import FAILED, INCOMPLETE, PASSED
 from ..shared.summary import incomplete
 from ..shared.units import BY_KEY, Units
 from ..verification import report as matrix_report
-from .arguments import RESULTS, finished, found
+from .arguments import RESULTS, finished, run_in
 from .history import load
 
 
@@ -71,7 +71,7 @@ def command(
     annotations
         Print GitHub workflow commands that mark the files of cases that got worse.
     """
-    run = found(folder)
+    run = run_in(folder)
     after = history.entry(run, str(folder))
     if commit and not against:
         raise CaseError(f"--commit {commit}: no history: give its file by --against")

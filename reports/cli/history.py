@@ -77,16 +77,16 @@ def load(file: Path) -> History:
         CaseError: if there is no such file, or it is not a history.
     """
     try:
-        found = history.read(file)
+        recorded = history.read(file)
     except OSError as error:
         raise CaseError(
             f"{file}: cannot be read ({error.strerror}): give what `southwell history add` wrote"
         ) from error
     except ValueError as error:
         raise CaseError(str(error)) from error
-    for number in found.torn:
+    for number in recorded.torn:
         print(f"southwell: {file}: line {number}: truncated, ignored", file=sys.stderr)
-    return found
+    return recorded
 
 
 def _checked_out() -> str:

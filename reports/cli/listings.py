@@ -24,15 +24,15 @@ from .errors import UsageError
 def cases() -> int:
     """List the cases that come with the package."""
     rows = []
-    found, absent = library.everything()
+    loaded, absent = library.everything()
     for name in library.names():
         if name in absent:
             rows.append((name, absent[name], "", ""))
             continue
-        known = found[name]
-        first, *_ = settings(known)
-        blades = ", ".join(v.name.partition("/")[2] for v in known.variants) if len(known.variants) > 1 else "1"
-        rows.append((name, known.text.title, blades, first.facts["speeds"]))
+        case = loaded[name]
+        first, *_ = settings(case)
+        blades = ", ".join(v.name.partition("/")[2] for v in case.variants) if len(case.variants) > 1 else "1"
+        rows.append((name, case.text.title, blades, first.facts["speeds"]))
     for name in library.mechanisms():
         about = mechanism.subject(library.mechanism(name)).setting()
         rows.append((name, about.title, "mechanism", about.facts["speeds"]))
@@ -66,11 +66,11 @@ def codes(*, pages: Path | None = None) -> int:
         print(code_pages.write(finished(pages / RESULTS), pages))
         return PASSED
     rows = []
-    for known in describe(registry.names()):
-        found = f"✔ {known.version}" if known.version else f"○ not found; {known.hint}"
-        omitted = ", ".join(known.effects.lacks()) or "nothing"
+    for code in describe(registry.names()):
+        version = f"✔ {code.version}" if code.version else f"○ not found; {code.hint}"
+        omitted = ", ".join(code.effects.lacks()) or "nothing"
         rows.append(
-            (known.name, known.title, f"✘ {known.failure.reason}" if known.failure else found, known.shares, omitted)
+            (code.name, code.title, f"✘ {code.failure.reason}" if code.failure else version, code.shares, omitted)
         )
     _print(("code", "title", "version", "shares with Southwell", "omits"), rows)
     return PASSED

@@ -11,7 +11,7 @@ from ..documents import html
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..shared.units import BY_KEY
 from ..verification import brief
-from .arguments import RESULTS, found, writing
+from .arguments import RESULTS, run_in, writing
 from .gate import earlier
 
 DASHBOARD = "dashboard"
@@ -39,7 +39,7 @@ def command(
     commit
         The run of this commit, or release, in the history; its first characters suffice.
     """
-    run = found(folder)
+    run = run_in(folder)
     lines: list[str] = []
     if since:
         gate = compare(earlier(since, commit), history.entry(run, str(folder)))

@@ -8,7 +8,7 @@ from ...cases.store import unfinished
 from ..shared.console import output
 from ..shared.statuses import INCOMPLETE, PASSED
 from ..verification import diagnoses, evidence, terminal
-from .arguments import RESULTS, found, writing
+from .arguments import RESULTS, run_in, writing
 
 
 def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
@@ -29,7 +29,7 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
         from ..documents import pdf as paper
 
         paper.require()
-    run = found(folder if folder.is_dir() else folder / RESULTS)
+    run = run_in(folder if folder.is_dir() else folder / RESULTS)
     with writing(folder):
         written = show(run, folder)
     if written is None:

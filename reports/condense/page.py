@@ -27,7 +27,7 @@ def beside(folder: Path) -> str:
 
 
 def own(
-    blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units, spec: Condensation | None, command: str
+    blade: Condensed, solved: Sequence[tuple[float, Modes]], units: Units, spec: Condensation | None, command: str
 ) -> str:
     """The page of a user's blade: the input, the segments, and the modes."""
     n = len(blade.segments)
@@ -55,16 +55,16 @@ maps the motion of the second frame relative to the first to the wrench on the s
         "are free.\n\n"
     )
     text += f"## Modes, {units.frequency}\n\n"
-    text += _table(_modes(blade, found, units))
-    text += "".join(f"\n\n{line}" for line in _remarks(blade, found, units))
+    text += _table(_modes(blade, solved, units))
+    text += "".join(f"\n\n{line}" for line in _remarks(blade, solved, units))
     return f"{text}\n\n`{command}`\n"
 
 
-def _modes(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units) -> list[dict[str, str]]:
+def _modes(blade: Condensed, solved: Sequence[tuple[float, Modes]], units: Units) -> list[dict[str, str]]:
     rows = []
-    for omega, modes in found:
-        known = zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True)
-        for k, (name, f, sure) in enumerate(known, 1):
+    for omega, modes in solved:
+        named = zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True)
+        for k, (name, f, sure) in enumerate(named, 1):
             speed = f"{omega * units.speeds:.6g}"
             rows.append(
                 {
@@ -78,11 +78,11 @@ def _modes(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units)
     return rows
 
 
-def _remarks(blade: Condensed, found: Sequence[tuple[float, Modes]], units: Units) -> list[str]:
+def _remarks(blade: Condensed, solved: Sequence[tuple[float, Modes]], units: Units) -> list[str]:
     """Remarks on the uncertainty of the modes, and on large steady strains."""
     rows = [
         Named(omega, k, name, float(f), float(sure), modes.strain)
-        for omega, modes in found
+        for omega, modes in solved
         for k, (name, f, sure) in enumerate(
             zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True), 1
         )

@@ -39,7 +39,7 @@ def verdicts() -> list[dict[str, str]]:
 
 def first(run: Run, name: str) -> dict[str, Any]:
     """The matrix: cells, cases, columns, and results of the negative controls."""
-    known, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
+    cases, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
     titles = {s.case: s.title for s in run.settings}
     return {
         "run": name,
@@ -48,14 +48,14 @@ def first(run: Run, name: str) -> dict[str, Any]:
         "evidence": evidence.rows(run),
         "answer": WORST_FIRST.index(evidence.VERDICT_OF[evidence.word(run)]),
         "verdicts": verdicts(),
-        "cases": [{"name": c, "title": titles.get(c, ""), "page": page(c), "unit": units(run, c).speed} for c in known],
+        "cases": [{"name": c, "title": titles.get(c, ""), "page": page(c), "unit": units(run, c).speed} for c in cases],
         "columns": [
             {"name": h, "shares": shared(run, h), "page": page(h, "code") if h in pages else None} for h in heads
         ],
         "versions": run.versions,
         "cells": [
             [
-                known.index(c.case),
+                cases.index(c.case),
                 heads.index(broad(c)),
                 round(c.omega * units(run, c.case).speeds, 6),
                 c.name,
@@ -144,8 +144,8 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
 
 def _lines(cells: list[Cell], u: Units) -> list[dict[str, Any]]:
     """Core's frequencies with all effects against speed, as in the report's Campbell diagram."""
-    found = core_lines([c for c in cells if c.role not in ("same discretisation", "measured")] or cells)
-    scaled = {name: [[o * u.speeds, line[o] * u.frequencies] for o in sorted(line)] for name, line in found.items()}
+    curves = core_lines([c for c in cells if c.role not in ("same discretisation", "measured")] or cells)
+    scaled = {name: [[o * u.speeds, line[o] * u.frequencies] for o in sorted(line)] for name, line in curves.items()}
     return [{"name": name, "points": points} for name, points in scaled.items()]
 
 
@@ -153,8 +153,8 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
     """The cells of a case by verdict, worst first: their number, and the largest difference relative to its target."""
     out, cells = [], [c for c in run.cells if c.case == case]
     for verdict, n in summary.counts(cells).items():
-        mine = [c for c in cells if c.verdict == verdict]
-        far = summary.largest(mine) if verdict == "known difference" else evidence.farthest(mine)
+        judged = [c for c in cells if c.verdict == verdict]
+        far = summary.largest(judged) if verdict == "known difference" else evidence.farthest(judged)
         text = plus_minus(far) if far and size(far) is not None else ""
         parts = (summary.column(far), far.name, units(run, case).at(far.omega)) if far else ()
         where = ", ".join(part for part in parts if part)
@@ -201,7 +201,7 @@ def codes(run: Run) -> list[dict[str, Any]]:
     out = []
     for name in code_names(run):
         cells = code_pages.own(run, name)
-        far, known = evidence.farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
+        far, explained = evidence.farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
         out.append(
             {
                 "name": name,
@@ -211,7 +211,7 @@ def codes(run: Run) -> list[dict[str, Any]]:
                 "shares": shared(run, name),
                 "counts": [[WORST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
                 "worst": _placed(far),
-                "known": _placed(known),
+                "known": _placed(explained),
             }
         )
     return out
@@ -227,12 +227,12 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
     cells = code_pages.own(run, name)
     worst = []
     for case in dict.fromkeys(c.case for c in cells):
-        mine = [c for c in cells if c.case == case]
-        far = summary.worst(mine)
+        here = [c for c in cells if c.case == case]
+        far = summary.worst(here)
         where = f"{far.name}, {units(run, case).at(far.omega)}" if far else ""
-        reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in mine))
-        verdict = WORST_FIRST.index(summary.worst_verdict(mine))
-        worst.append([case, page(case), verdict, len(mine), plus_minus(far) if far else "", where, reason])
+        reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
+        verdict = WORST_FIRST.index(summary.worst_verdict(here))
+        worst.append([case, page(case), verdict, len(here), plus_minus(far) if far else "", where, reason])
     return {
         "name": name,
         "version": run.versions.get(name, ""),

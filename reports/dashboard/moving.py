@@ -44,13 +44,13 @@ def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
     solved = []
     for omega in sorted({min(c.omega for c in cells), max(c.omega for c in cells)}):
         try:
-            found = modes(blade, omega, ELEMENTS, COUNT)
+            at_speed = modes(blade, omega, ELEMENTS, COUNT)
         except (SteadyStateError, UnstableError):
             continue
-        if not _same(found, cells):
+        if not _same(at_speed, cells):
             return None
-        found = aligned(found, weight)
-        solved.append(_at(found, families(participation(found, blade)), radius, u))
+        at_speed = aligned(at_speed, weight)
+        solved.append(_at(at_speed, families(participation(at_speed, blade)), radius, u))
     frames = sections.frames(blade, STATIONS * blade.length)
     return {
         "elements": ELEMENTS,
@@ -60,21 +60,21 @@ def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
     }
 
 
-def _at(found: Modes, names: Sequence[str], radius: float, u: Units) -> dict[str, Any]:
+def _at(solved: Modes, names: Sequence[str], radius: float, u: Units) -> dict[str, Any]:
     out = []
-    for k, (name, shape) in enumerate(zip(names, found.shapes, strict=True)):
+    for k, (name, shape) in enumerate(zip(names, solved.shapes, strict=True)):
         far, steep = np.abs(shape[:, :3]).max() / radius / FARTHEST, np.abs(shape[:, 3]).max() / STEEPEST
         scaled = shape / [radius, radius, radius, 1.0] / max(far, steep)
         label = f"{name} {1 + list(names[:k]).count(name)}"
-        f = float(found.frequencies[k]) * u.frequencies
+        f = float(solved.frequencies[k]) * u.frequencies
         out.append({"name": label, "f": f, "re": scaled.real.round(5).tolist(), "im": scaled.imag.round(5).tolist()})
-    return {"speed": found.omega * u.speeds, "modes": out}
+    return {"speed": solved.omega * u.speeds, "modes": out}
 
 
-def _same(found: Modes, cells: Sequence[Cell]) -> bool:
+def _same(solved: Modes, cells: Sequence[Cell]) -> bool:
     """Whether the run's lowest frequency at this speed is among the computed ones."""
-    known = [c.full for c in cells if c.omega == found.omega and c.full is not None]
-    return not known or bool(np.abs(found.frequencies / min(known) - 1.0).min() < SAME)
+    references = [c.full for c in cells if c.omega == solved.omega and c.full is not None]
+    return not references or bool(np.abs(solved.frequencies / min(references) - 1.0).min() < SAME)
 
 
 def _blade(case: str) -> Blade | None:

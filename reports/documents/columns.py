@@ -70,7 +70,7 @@ def covered(text: str) -> bool:
 def _measure(cell: Pieces) -> tuple[float, float]:
     """Width of the longest word and of the longest line, em."""
     text, at = _positions(cell)
-    words, whole = ([at[m.end()] - at[m.start()] for m in found] for found in (WORD.finditer(text), _lines(text)))
+    words, whole = ([at[m.end()] - at[m.start()] for m in matches] for matches in (WORD.finditer(text), _lines(text)))
     return max(words, default=0.0) + SLACK, SLACK + max(whole, default=0.0)
 
 

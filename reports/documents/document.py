@@ -114,9 +114,9 @@ def _verdicts(tokens: Sequence[Token]) -> None:
     for token, inline in pairwise(tokens):
         if token.type in ("th_open", "td_open"):
             token.attrs.pop("style", None)  # all are left-aligned
-            found = VERDICT.match(words(inline))
-            if found and token.type == "td_open":
-                token.attrSet("class", NAMES[found[1]])
+            sign = VERDICT.match(words(inline))
+            if sign and token.type == "td_open":
+                token.attrSet("class", NAMES[sign[1]])
 
 
 def _answers(tokens: Sequence[Token]) -> None:

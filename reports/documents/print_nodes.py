@@ -71,9 +71,9 @@ def _block(node: SyntaxTreeNode, inline: Inline) -> Iterator[Node]:
         yield {"kind": kind, "body": _blocks(node, inline)}
     elif kind == "hr":
         yield {"kind": kind}
-    elif kind == "html_block" and (found := FOLD.fullmatch(node.content.rstrip())):
-        if found[1] is not None:
-            yield {"kind": "summary", "text": unescape(found[1])}
+    elif kind == "html_block" and (fold := FOLD.fullmatch(node.content.rstrip())):
+        if fold[1] is not None:
+            yield {"kind": "summary", "text": unescape(fold[1])}
     else:
         raise NotImplementedError(f"no layout in print for {kind}: add it to {__name__}")
 
@@ -94,8 +94,8 @@ def _inline(node: SyntaxTreeNode, ids: set[str], folder: Path) -> Node:
     if kind in ("hardbreak", "html_inline"):  # the only HTML is a line break
         return {"kind": "break"}
     if kind == "image":
-        found = figure(str(node.attrs["src"]), folder)
-        return {"kind": "em", "body": _children(node, ids, folder)} if found is None else _figure(node, found)
+        svg = figure(str(node.attrs["src"]), folder)
+        return {"kind": "em", "body": _children(node, ids, folder)} if svg is None else _figure(node, svg)
     if kind in ("em", "strong", "link"):
         body, to = _children(node, ids, folder), str(node.attrs.get("href", ""))
         if kind == "link" and to.startswith("#"):

@@ -39,8 +39,8 @@ def verdict(judgement: Judgement) -> str:
     parts = [_count(files, "linearisation"), _count(len(judgement.sets), "operating point")] if files else []
     parts += [_count(len(judgement.tables), "table of modes", "tables of modes")] if judgement.tables else []
     defects = sum(finding.level == DEFECT for finding in judgement.findings)
-    found = f"; {_count(defects, 'defect')}" if defects else ""
-    return f"{judgement.verdict}: {MEANING[judgement.verdict]} ({', '.join(parts)}{found})"
+    counted = f"; {_count(defects, 'defect')}" if defects else ""
+    return f"{judgement.verdict}: {MEANING[judgement.verdict]} ({', '.join(parts)}{counted})"
 
 
 def findings(judgement: Judgement) -> Iterator[str]:
@@ -167,8 +167,8 @@ def _structural(track: TrackedMode) -> bool:
     return any(mode is not None and mode.structural > 0.5 for mode in track.at)
 
 
-def _shown(found: tuple[Mode, ...], every: bool) -> list[Mode]:
-    return list(found) if every else [mode for mode in found if mode.structural > 0.5][:MOST]
+def _shown(named: tuple[Mode, ...], every: bool) -> list[Mode]:
+    return list(named) if every else [mode for mode in named if mode.structural > 0.5][:MOST]
 
 
 def _uncertainty(mode: Mode) -> str:

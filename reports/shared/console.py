@@ -109,5 +109,7 @@ class Counter(_Display):
         self.bar.update(self.task, completed=done)
         before, begun = self.first
         if done > before and self.due(now):
-            left = timedelta(seconds=round((now - begun) / (done - before) * (self.total - done)))
-            self.console.print(f"{done} of {self.total} {self.what}; remaining: {left}", markup=False, soft_wrap=True)
+            remaining = timedelta(seconds=round((now - begun) / (done - before) * (self.total - done)))
+            self.console.print(
+                f"{done} of {self.total} {self.what}; remaining: {remaining}", markup=False, soft_wrap=True
+            )

@@ -144,17 +144,17 @@ def save(figure: "Figure", path: Path) -> None:
     atomic.write(path, svg(figure))
 
 
-def spread(wanted: Sequence[float], gap: float) -> list[float]:
-    """Positions as near as possible to ``wanted``, in the same order, at least ``gap`` apart; for labels at lines."""
-    order = sorted(range(len(wanted)), key=lambda k: wanted[k])
+def spread(targets: Sequence[float], gap: float) -> list[float]:
+    """Positions as near as possible to ``targets``, in the same order, at least ``gap`` apart; for labels at lines."""
+    order = sorted(range(len(targets)), key=lambda k: targets[k])
     blocks: list[tuple[float, list[int]]] = []  # centre and members of labels that touch
     for k in order:
-        centre, members = wanted[k], [k]
+        centre, members = targets[k], [k]
         while blocks and centre - blocks[-1][0] < gap * (len(blocks[-1][1]) + len(members)) / 2:
             members = blocks.pop()[1] + members
-            centre = sum(wanted[i] for i in members) / len(members)
+            centre = sum(targets[i] for i in members) / len(members)
         blocks.append((centre, members))
-    out = [0.0] * len(wanted)
+    out = [0.0] * len(targets)
     for centre, members in blocks:
         for place, k in enumerate(members):
             out[k] = centre + gap * (place - (len(members) - 1) / 2)

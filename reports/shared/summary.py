@@ -82,8 +82,8 @@ def status(run: Run) -> int:
 
 def worst_verdict(cells: Iterable[Cell]) -> Verdict:
     """The worst verdict of the cells."""
-    found = {c.verdict for c in cells}
-    return next(v for v in WORST_FIRST if v in found)
+    verdicts = {c.verdict for c in cells}
+    return next(v for v in WORST_FIRST if v in verdicts)
 
 
 def size(cell: Cell) -> float | None:
@@ -111,9 +111,9 @@ def worst(cells: Iterable[Cell]) -> Cell | None:
 
 def counts(cells: Iterable[Cell]) -> dict[Verdict, int]:
     """Number of cells by verdict; all verdicts, worst first."""
-    found = Counter(c.verdict for c in cells)
-    assert set(found) <= set(get_args(Verdict))
-    return {v: found[v] for v in WORST_FIRST}
+    tally = Counter(c.verdict for c in cells)
+    assert set(tally) <= set(get_args(Verdict))
+    return {v: tally[v] for v in WORST_FIRST}
 
 
 def cases(run: Run) -> list[str]:

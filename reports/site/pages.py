@@ -163,9 +163,9 @@ def _pictures(case: str, drawn: Sequence[str]) -> str:
 
 def codes(run: Run) -> Pages:
     """One page per code, and an index."""
-    known = code_pages.described()
-    out: Pages = {"codes/index.md": code_pages.index(run, known)}
-    return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in known}
+    described = code_pages.described()
+    out: Pages = {"codes/index.md": code_pages.index(run, described)}
+    return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in described}
 
 
 def command_line() -> str:

@@ -58,9 +58,9 @@ def condense(run: Run) -> Run:
     """Reduce a run to the rows of the tables: the worst cell of each case and column, and the paper's Table 1."""
     cells: list[Cell] = []
     for case in summary.cases(run):
-        mine = [c for c in run.cells if c.case == case and c.code not in ISOLATED]
-        for name in columns(mine, broad):
-            group = [c for c in mine if broad(c) == name]
+        own = [c for c in run.cells if c.case == case and c.code not in ISOLATED]
+        for name in columns(own, broad):
+            group = [c for c in own if broad(c) == name]
             grave = summary.worst_verdict(group)
             cells.append(summary.worst(group) or next(c for c in group if c.verdict == grave))
     table = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]

@@ -44,13 +44,13 @@ def figure(beams: Mapping[str, Sequence[Point]]) -> Figure:
             rpm_max = max(p.rpm for p in points)
             axes = fig.add_subplot(-(-len(panels) // 3), 3, k)
             for j, line in enumerate(dict.fromkeys(p.line for p in points)):
-                mine = [p for p in points if p.line == line]
-                rpm, f = np.array([p.rpm for p in mine]), np.array([p.validation.simulated for p in mine])
+                measured = [p for p in points if p.line == line]
+                rpm, f = np.array([p.rpm for p in measured]), np.array([p.validation.simulated for p in measured])
                 fine = np.linspace(rpm[0], rpm[-1], 81)
                 colour = COLOURS[j % len(COLOURS)]
                 axes.plot(fine, np.sqrt(np.interp(fine**2, rpm**2, f**2)), color=colour, linewidth=1.2)
-                bars = [COVERAGE * p.validation.data for p in mine]
-                D = [p.validation.measured for p in mine]
+                bars = [COVERAGE * p.validation.data for p in measured]
+                D = [p.validation.measured for p in measured]
                 axes.errorbar(rpm, D, yerr=bars, fmt=MARKERS[j], color=colour, markersize=4, elinewidth=0.8)
             axes.set(
                 xlabel="rotor speed, rpm",

@@ -70,15 +70,15 @@ def figure(model: Simulated, points: Sequence[Point]) -> Figure:
         axes = fig.add_subplot()
         rpm = np.linspace(0.0, comparison.SPEEDS[-1], 81)
         for k, line in enumerate(comparison.data()["lines"]):
-            mine = [p for p in points if p.line == line["name"]]
+            measured = [p for p in points if p.line == line["name"]]
             colour = COLOURS[k % len(COLOURS)]
             for name in line["of"]:
                 f = [comparison.at_speed([at[name] for at in model.base], x)[0] for x in rpm]
                 axes.plot(rpm, f, color=colour, linewidth=1.2)
             axes.errorbar(
-                [p.rpm for p in mine],
-                [p.validation.measured for p in mine],
-                yerr=[COVERAGE * p.validation.data for p in mine],
+                [p.rpm for p in measured],
+                [p.validation.measured for p in measured],
+                yerr=[COVERAGE * p.validation.data for p in measured],
                 fmt=MARKERS[k % len(MARKERS)],
                 color=colour,
                 markersize=5,

@@ -54,9 +54,9 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
         own = f"{core * unit.frequencies:.7g}" if core else _plain_value(here[0])
         row = {"mode": plain(mode), f"Southwell, {unit.frequency}": own}
         for name in columns(cells):
-            mine = next((c for c in here if column(c) == name), None)
-            other = f"<br>{plain(mine.name)}" if mine and mine.name != mode else ""
-            row[plain(name)] = f"{_entry(mine, unit)}{other}" if mine else ""
+            cell = next((c for c in here if column(c) == name), None)
+            other = f"<br>{plain(cell.name)}" if cell and cell.name != mode else ""
+            row[plain(name)] = f"{_entry(cell, unit)}{other}" if cell else ""
         rows.append(row)
     return table(rows)
 
@@ -70,13 +70,13 @@ def _plain_value(cell: Cell) -> str:
 
 def _rows(cells: Sequence[Cell]) -> dict[Cell, tuple[float | str, int]]:
     """The row of each cell: core's frequency with all effects, and the place among the column's cells with that frequency."""
-    found: dict[Cell, tuple[float | str, int]] = {}
+    rows: dict[Cell, tuple[float | str, int]] = {}
     seen: Counter[tuple[str, float | str]] = Counter()
     for c in sorted(cells, key=lambda c: c.mode):
         key = c.name if c.full is None else c.full
-        found[c] = (key, seen[column(c), key])
+        rows[c] = (key, seen[column(c), key])
         seen[column(c), key] += 1
-    return found
+    return rows
 
 
 def _entry(cell: Cell, unit: Units) -> str:

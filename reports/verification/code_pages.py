@@ -33,11 +33,11 @@ def write(run: Run, folder: Path) -> Path:
     """
     pages = folder / FOLDER
     pages.mkdir(parents=True, exist_ok=True)
-    known = described()
-    for code in known:
+    codes = described()
+    for code in codes:
         atomic.write(pages / f"{code.name}.md", page(run, code))
     path = pages / "index.md"
-    atomic.write(path, index(run, known))
+    atomic.write(path, index(run, codes))
     return path
 
 
@@ -46,10 +46,10 @@ def described(names: Sequence[str] | None = None) -> tuple[Description, ...]:
     return describe(registry.names() if names is None else names, [p.having for p in PROPERTIES])
 
 
-def index(run: Run, known: Sequence[Description]) -> str:
+def index(run: Run, codes: Sequence[Description]) -> str:
     """The table of all codes: version, sharing with core, cells by verdict, worst difference."""
     rows = []
-    for code in known:
+    for code in codes:
         cells = own(run, code.name)
         far = summary.worst(cells)
         rows.append(

@@ -15,9 +15,9 @@ def headline(run: Run) -> str:
         return ""
     if missed:
         return f"**Negative controls not detected: {missed}.**"
-    left = len(run.controls) - len(tried)
+    skipped = len(run.controls) - len(tried)
     silent = sum(bool(c.without_effect) for c in tried)
-    rest = f"; {left} were not run, because a code is missing" if left else ""
+    rest = f"; {skipped} were not run, because a code is missing" if skipped else ""
     count = len(tried) - silent
     rest += f"; {silent} have no effect here" if silent else ""
     return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{rest}."

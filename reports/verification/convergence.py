@@ -88,12 +88,12 @@ def _frame(axes: Axes, levels: Sequence[Level], cells: dict[tuple[float, int, st
 
 def ticks(least: int, most: int) -> list[int]:
     """Round numbers from ``least`` to ``most``: as few to a decade as give three of them."""
-    found: list[int] = []
+    round_numbers: list[int] = []
     for digits in ((1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 8)):
-        found = [d * 10**k for k in range(len(str(most))) for d in digits if least <= d * 10**k <= most]
-        if len(found) >= 3:
+        round_numbers = [d * 10**k for k in range(len(str(most))) for d in digits if least <= d * 10**k <= most]
+        if len(round_numbers) >= 3:
             break
-    return found
+    return round_numbers
 
 
 def _error(level: Level, cell: Cell) -> float:
@@ -104,13 +104,15 @@ def _panel(axes: Axes, cells: Sequence[Cell], levels: Sequence[Level], style: di
     axes.axhline(max(c.target for c in cells), color=FAINT, lw=1.2, zorder=1)
     ends = []
     for cell in cells:
-        mine = sorted((v for v in levels if (v.code, v.mode) == (cell.code, cell.mode)), key=lambda v: v.elements)
-        if not mine:
+        refinements = sorted(
+            (v for v in levels if (v.code, v.mode) == (cell.code, cell.mode)), key=lambda v: v.elements
+        )
+        if not refinements:
             continue
-        look, errors = style[column(cell)], [_error(v, cell) for v in mine]
-        axes.add_line(_line(look, points=([v.elements for v in mine], errors), zorder=3))
+        look, errors = style[column(cell)], [_error(v, cell) for v in refinements]
+        axes.add_line(_line(look, points=([v.elements for v in refinements], errors), zorder=3))
         if cell.order is not None:
-            ends.append((mine[-1].elements, errors[-1], f"{cell.order:.1f}", look.colour))
+            ends.append((refinements[-1].elements, errors[-1], f"{cell.order:.1f}", look.colour))
     low, high = np.log10(axes.get_ylim())
     points = 1.7 * 72 / (high - low)  # points per decade; panels are about 1.7 inches high
     heights = spread([np.log10(y) * points for _, y, _, _ in ends], 9.0)

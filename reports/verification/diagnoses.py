@@ -5,19 +5,22 @@ from ...cases.judge.results import Run
 
 def lines(run: Run) -> list[str]:
     """One line for each column with a diagnosis."""
-    several = len({one.case for one in run.diagnoses}) > 1
-    return [f"{one.code}{f', {one.case}' if several else ''}: {one.sentence}." for one in run.diagnoses]
+    several = len({diagnosis.case for diagnosis in run.diagnoses}) > 1
+    return [
+        f"{diagnosis.code}{f', {diagnosis.case}' if several else ''}: {diagnosis.sentence}."
+        for diagnosis in run.diagnoses
+    ]
 
 
 def rows(run: Run, case: str) -> list[dict[str, str]]:
     """One row for each column of a case with a diagnosis."""
     return [
         {
-            "code": one.code,
-            "diagnosis": one.sentence,
-            "most probable causes": "; ".join(one.causes),
-            "ω² = ω₀² + φ Ω²": "; ".join(one.modes),
+            "code": diagnosis.code,
+            "diagnosis": diagnosis.sentence,
+            "most probable causes": "; ".join(diagnosis.causes),
+            "ω² = ω₀² + φ Ω²": "; ".join(diagnosis.modes),
         }
-        for one in run.diagnoses
-        if one.case == case
+        for diagnosis in run.diagnoses
+        if diagnosis.case == case
     ]

@@ -10,11 +10,11 @@ TINY = 1e-9
 
 def rows(run: Run, case: str) -> list[dict[str, str]]:
     """One row per cause (discretisation, model form, rounding) with its effect on each mode."""
-    mine = [s for s in run.error_budget if s.case == case]
-    modes = list(dict.fromkeys(s.mode for s in mine))
-    by = {(s.cause, s.part, s.mode): s for s in mine}
+    entries = [s for s in run.error_budget if s.case == case]
+    modes = list(dict.fromkeys(s.mode for s in entries))
+    by = {(s.cause, s.part, s.mode): s for s in entries}
     order = {cause: k for k, cause in enumerate(("discretisation", "model form", "rounding"))}
-    parts = sorted(dict.fromkeys((s.cause, s.part) for s in mine), key=lambda p: order[p[0]])
+    parts = sorted(dict.fromkeys((s.cause, s.part) for s in entries), key=lambda p: order[p[0]])
     return [
         {"cause": cause, "what": part} | {mode: _shown(by.get((cause, part, mode))) for mode in modes}
         for cause, part in parts

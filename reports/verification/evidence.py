@@ -95,8 +95,8 @@ def _mute(cell: Cell) -> bool:
 
 def urgent(run: Run) -> list[str]:
     """Lines on the worst failure, on failures without a number, and on the largest inconclusive difference."""
-    found = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
-    sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in found.items() if cell]
+    largest = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
+    sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in largest.items() if cell]
     mute = {(c.code, c.case): c.reason.rstrip(".") for c in run.cells if _mute(c)}
     return [*sentences, *(f"Failed without a frequency: {code} ({case}): {why}." for (code, case), why in mute.items())]
 
@@ -139,8 +139,8 @@ def _statement(cell: Cell) -> str:
 
 def _measured(cells: Iterable[Cell]) -> Cell | None:
     """The measured point with the largest visible model error, or otherwise the largest difference."""
-    mine = [c for c in cells if c.verdict == "measured"]
-    return max(mine, key=lambda c: (visible(c), abs(c.difference or 0.0)), default=None)
+    points = [c for c in cells if c.verdict == "measured"]
+    return max(points, key=lambda c: (visible(c), abs(c.difference or 0.0)), default=None)
 
 
 def rows(run: Run) -> list[dict[str, str]]:
@@ -170,8 +170,8 @@ def farthest(cells: Iterable[Cell]) -> Cell | None:
     """The cell of the worst verdict in ``SAME`` whose difference is the largest relative to its target."""
     cells = list(cells)
     for verdict in SAME:
-        if there := [c for c in cells if c.verdict == verdict]:
-            return max(there, key=lambda c: abs(c.difference or 0.0) / c.target)
+        if judged := [c for c in cells if c.verdict == verdict]:
+            return max(judged, key=lambda c: abs(c.difference or 0.0) / c.target)
     return None
 
 

@@ -113,10 +113,10 @@ def _markers(
     """Draw hollow nested markers, the first code's the largest, so that codes that agree remain visible."""
     handles = [Line2D([], [], color=INK, lw=1.0, label="Southwell, converged")]
     for rank, name in enumerate(shown):
-        mine = [c for c in cells if column(c) == name and c.value is not None]
+        own = [c for c in cells if column(c) == name and c.value is not None]
         handles += axes.plot(
-            [c.omega * units.speeds for c in mine],
-            [(c.value or 0.0) * units.frequencies for c in mine],
+            [c.omega * units.speeds for c in own],
+            [(c.value or 0.0) * units.frequencies for c in own],
             ls="",
             marker=style[name].marker,
             ms=10.0 - 7.0 * rank / max(len(shown) - 1, 1),
@@ -134,11 +134,11 @@ def _data(axes: Axes, cells: Sequence[Cell], units: Units) -> list[Line2D]:
     """Draw measured points as filled diamonds; the bars are the validation uncertainty, 2 u_val."""
     handles = []
     for name, face in zip(columns(cells), (INK, MUTED, FAINT) * len(cells), strict=False):
-        mine = [c for c in cells if column(c) == name]
+        own = [c for c in cells if column(c) == name]
         axes.errorbar(
-            [c.omega * units.speeds for c in mine],
-            [(c.value or 0.0) * units.frequencies for c in mine],
-            yerr=[(c.uncertainty or 0.0) * (c.reference or 0.0) * units.frequencies for c in mine],
+            [c.omega * units.speeds for c in own],
+            [(c.value or 0.0) * units.frequencies for c in own],
+            yerr=[(c.uncertainty or 0.0) * (c.reference or 0.0) * units.frequencies for c in own],
             fmt="D",
             ms=4.5,
             color=face,
@@ -183,11 +183,11 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
         axes.set_xlim(*_decades(cells))
         axes.set_ylim(len(names) - 0.5, -0.5)
         for row, name in enumerate(names):
-            mine = [c for c in cells if column(c) == name]
+            own = [c for c in cells if column(c) == name]
             if row % 2:
                 axes.axhspan(row - 0.5, row + 0.5, color="#f5f5f5", lw=0, zorder=0)
-            _row(axes, row, mine, tracks, style[name])
-            worst = max(mine, key=lambda c: abs(c.difference or 0.0))
+            _row(axes, row, own, tracks, style[name])
+            worst = max(own, key=lambda c: abs(c.difference or 0.0))
             text = f"{amount(worst.difference or 0.0, worst.target)}\n{worst.name}, {units.at(worst.omega)}"
             axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
         axes.set_yticks(range(len(names)), [fill(name, LONGEST) for name in names])

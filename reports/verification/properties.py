@@ -116,9 +116,9 @@ def invariances(run: Run, case: str) -> list[dict[str, str]]:
 def models(run: Run, case: str) -> list[dict[str, str]]:
     """One row for each code's model: the differences of mass, first moments, inertia and tip flexibility."""
     out = []
-    mine = [c for c in run.property_checks if c.case == case and c.quantity == "fingerprint"]
-    for code in _codes(mine):
-        checks = [c for c in mine if c.code == code]
+    fingerprints = [c for c in run.property_checks if c.case == case and c.quantity == "fingerprint"]
+    for code in _codes(fingerprints):
+        checks = [c for c in fingerprints if c.code == code]
         by = {c.part: c for c in checks}
         moments, bends = ([c for c in checks if c.part.startswith(what)] for what in ("first moment", "tip flex"))
         verdict: Verdict = min(

@@ -135,24 +135,24 @@ def marked(run: Run, lines: Sequence[str]) -> list[str]:
 def unasked(run: Run) -> str:
     """The codes without any answer, with the reasons, in one line; empty if there are none."""
     omitted = []
-    for name, mine in _silent(run).items():
-        reasons = "; ".join(dict.fromkeys(c.reason for c in mine if c.verdict == "not run"))
+    for name, cells in _silent(run).items():
+        reasons = "; ".join(dict.fromkeys(c.reason for c in cells if c.verdict == "not run"))
         omitted.append(f"{plain(name)} ({plain(reasons) or 'not applicable'})")
     return ", ".join(omitted)
 
 
 def _by_column(cells: Sequence[Cell]) -> dict[str, list[Cell]]:
     """The cells of each column, in the order of the columns."""
-    found: dict[str, list[Cell]] = {name: [] for name in columns(cells, broad)}
+    by_name: dict[str, list[Cell]] = {name: [] for name in columns(cells, broad)}
     for cell in cells:
-        found[broad(cell)].append(cell)
-    return found
+        by_name[broad(cell)].append(cell)
+    return by_name
 
 
 def _silent(run: Run) -> dict[str, list[Cell]]:
     """The columns without any answer, with their cells, unless no column has one."""
     by = _by_column(run.cells)
-    empty = {n: mine for n, mine in by.items() if all(c.verdict in ("not run", "not applicable") for c in mine)}
+    empty = {n: cells for n, cells in by.items() if all(c.verdict in ("not run", "not applicable") for c in cells)}
     return empty if len(empty) < len(by) else {}
 
 
@@ -162,14 +162,14 @@ def heat(run: Run, linked: bool = False) -> str:
     Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases link to their sections.
     """
     silent = _silent(run)
-    shown = {n: mine for n, mine in _by_column(run.cells).items() if n not in silent}
+    shown = {n: cells for n, cells in _by_column(run.cells).items() if n not in silent}
     rows = []
     for case in summary.cases(run):
         here = _by_column([c for c in run.cells if c.case == case])
         name = f"[{plain(case)}](#{anchor(case)})" if linked else plain(case)
         rows.append({"case": name} | {plain(n): _heat(here.get(n, [])) for n in shown})
     if any(c.shares for c in run.cells):
-        shares = {plain(n): plain(witnesses.shared(mine)) for n, mine in shown.items()}
+        shares = {plain(n): plain(witnesses.shared(cells)) for n, cells in shown.items()}
         rows.append({"case": "*shares with Southwell*"} | shares)
     return table(rows)
 

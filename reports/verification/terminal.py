@@ -53,8 +53,8 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
         for name in part:
             out.add_column(escape(heads[name]), overflow="fold", min_width=widths[name])
         for case, shown in zip(summary.cases(run), cases, strict=True):
-            mine = [c for c in run.cells if c.case == case]
-            out.add_row(escape(shown), *[_field([c for c in mine if broad(c) == name]) for name in part])
+            cells = [c for c in run.cells if c.case == case]
+            out.add_row(escape(shown), *[_field([c for c in cells if broad(c) == name]) for name in part])
         if any(c.shares for c in run.cells):
             out.add_section()
             shown = [escape(shares[name]).replace(" ", "\n") for name in part]

@@ -17,11 +17,11 @@ def table(run: Run) -> list[dict[str, str]]:
     """One row per blade: groups that agree and are required, their members, and witnesses that do not count."""
     rows = []
     for case in summary.cases(run):
-        found = witnesses(run, case)
-        agreeing = groups(found)
+        testimony = witnesses(run, case)
+        agreeing = groups(testimony)
         setting = next((s for s in run.settings if s.case == case), None)
         counted = [w for group in agreeing for w in group]
-        rest = [w for w in found if w not in counted]
+        rest = [w for w in testimony if w not in counted]
         rows.append(
             {
                 "case": case,
@@ -46,9 +46,9 @@ def _required(groups: int, lacking: str) -> str:
     return f"{groups}: {lacking}" if lacking else str(groups)
 
 
-def _names(found: Sequence[Witness]) -> str:
+def _names(named: Sequence[Witness]) -> str:
     """The names, with the target if it is wider than the paper's."""
-    return ", ".join(w.name + (f" (to {unsigned(w.target)})" if w.target > summary.PAPER else "") for w in found)
+    return ", ".join(w.name + (f" (to {unsigned(w.target)})" if w.target > summary.PAPER else "") for w in named)
 
 
 def origins(run: Run) -> list[dict[str, str]]:
@@ -76,7 +76,7 @@ def headline(run: Run) -> str:
     if not counted or not run.origins:
         return ""
     least = min(counted, key=lambda case: len(counted[case]))
-    low, many = len(counted[least]), max(len(found) for found in counted.values())
+    low, many = len(counted[least]), max(len(agreeing) for agreeing in counted.values())
     who = "; ".join(engines(group) for group in counted[least])
     span = f"{low} ({least}{f': {who}' if who else ''})" + (f" to {many}" if many > low else "")
     own = [case for case, agreeing in counted.items() if agreeing and not any(map(foreign_theory, agreeing))]

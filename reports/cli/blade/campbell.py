@@ -203,8 +203,8 @@ def command(
             confirmed = confirmed_by(diagram, subject, units)
             extra.append(confirmation_table.sheet(diagram, confirmed, units))
         if other:
-            found = blade_changes(subject.blade, other.blade, speeds, modes, elements)
-            extra.append(changes_table.sheet(found, other.blade.name, units))
+            changes_of_modes = blade_changes(subject.blade, other.blade, speeds, modes, elements)
+            extra.append(changes_table.sheet(changes_of_modes, other.blade.name, units))
         about = (*options.blade_alone(blade), *options.loads(azimuth, tilt, load))
         for text in about:
             output().print(text, style="bold", markup=False, soft_wrap=True)
@@ -248,12 +248,12 @@ def _check(out: Path) -> None:
     Raises:
         CaseError: if it cannot be written.
     """
-    there = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
+    existing = next((path for path in (out, *out.parents) if os.path.exists(path)), Path())
     with writable(f"--out {out}"):
-        if not os.path.isdir(there):
-            raise OSError(errno.ENOTDIR, f"{there} is a file")
-        if not os.access(there, os.W_OK):
-            raise OSError(errno.EACCES, f"no permission in {there}")
+        if not os.path.isdir(existing):
+            raise OSError(errno.ENOTDIR, f"{existing} is a file")
+        if not os.access(existing, os.W_OK):
+            raise OSError(errno.EACCES, f"no permission in {existing}")
 
 
 def solve(blade: Blade, request: CampbellRequest, units: Units, workers: int = 1) -> Campbell:
@@ -309,9 +309,9 @@ def _shared(
     def answer(omega: float) -> Modes:
         if omega not in ahead:
             return here(omega)
-        found = ahead[omega].result()
+        solved = ahead[omega].result()
         progress(omega)
-        return found
+        return solved
 
     return answer
 

@@ -20,8 +20,8 @@ TURBINES = (".fst", ".htc")
 
 def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
     """Rotor speeds (rad/s) and their unit; None if neither option is given."""
-    found = request.speeds(rpm, omega)
-    return found and (found[0], RPM if found[1] else RAD_S)
+    asked = request.speeds(rpm, omega)
+    return asked and (asked[0], RPM if asked[1] else RAD_S)
 
 
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
@@ -80,7 +80,7 @@ def per_rev(text: str) -> tuple[int, ...]:
     """The orders in ``1:6`` or ``1,2,3,6``, ascending."""
     first, colon, last = text.partition(":")
     try:
-        found = (
+        orders = (
             tuple(range(int(first), min(int(last), MOST_PER_REV + 1) + 1))
             if colon
             else tuple(sorted({int(p) for p in text.split(",")}))
@@ -89,9 +89,9 @@ def per_rev(text: str) -> tuple[int, ...]:
         raise CaseError(
             f"--per-rev: {text!r} is neither first:last nor whole numbers with commas, as in 1:6 or 1,3,6"
         ) from None
-    if not found or found[0] < 1 or found[-1] > MOST_PER_REV:
+    if not orders or orders[0] < 1 or orders[-1] > MOST_PER_REV:
         raise CaseError(f"--per-rev: {text!r}: needs 1 ≤ first ≤ last ≤ {MOST_PER_REV}, as in 1:6")
-    return found
+    return orders
 
 
 def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, float]:

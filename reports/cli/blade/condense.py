@@ -61,8 +61,8 @@ def command(
     else:
         spec = condensing.condense(path)
         blade = spec.blade
-    found = [(speed, condensed.modes(blade, speed, modes, allow_large_strain)) for speed in speeds]
-    text = page.own(blade, found, units, spec, _line())
+    solved = [(speed, condensed.modes(blade, speed, modes, allow_large_strain)) for speed in speeds]
+    text = page.own(blade, solved, units, spec, _line())
     folder = _folder(out)
     _write(folder, text, blade)
     output().print(text, markup=False, soft_wrap=True)

@@ -77,10 +77,10 @@ def command(
         raise CaseError(f"{blade}: {len(subjects)} blades ({names}): name one of them")
     console = output()
     with writable(str(out), "name"):
-        written, left = _write(subjects[0], out, chosen, rpm / RPM.speeds)
+        written, mount = _write(subjects[0], out, chosen, rpm / RPM.speeds)
     console.print(", ".join(str(path) for path in written), markup=False, soft_wrap=True)
-    if left is not None:
-        console.print(escape(_main_file(left)), soft_wrap=True)
+    if mount is not None:
+        console.print(escape(_main_file(mount)), soft_wrap=True)
     not_used.show((u for u in subjects[0].unused if u.name not in CARRIED[chosen]), console)
     if chosen == "beamdyn" and (moved := beamdyn.spline_error(subjects[0].blade)) > KEPT:
         message = f"the curve between stations changes: BeamDyn's spline moves stations by {moved:.2g} of the length"
@@ -97,8 +97,8 @@ def _write(subject: Subject, out: Path, to: Format, omega: float) -> tuple[list[
         southwell_toml.write(blade, out)
         return [out], None
     if to == "beamdyn":
-        left = beamdyn.write(blade, out, given)
-        return [out, beamdyn.blade_file(out)], left
+        mount = beamdyn.write(blade, out, given)
+        return [out, beamdyn.blade_file(out)], mount
     return [out], elastodyn.write(blade, out, omega, given)
 
 
@@ -107,14 +107,14 @@ def _unknown(given: Sequence[Unused], to: Format) -> list[str]:
     return [name for name in CARRIED[to] if name not in {u.name for u in given}]
 
 
-def _main_file(left: Mount) -> str:
+def _main_file(mount: Mount) -> str:
     """Describe the mount in the names, units and signs of ElastoDyn's main file, and how to read the blade again."""
-    values = {"HubRad": left.hub_radius or 0.0, "PreCone(1)": float(np.degrees(left.precone or 0.0))}
-    if left.length is not None:
-        values = {"TipRad": left.length + values["HubRad"], **values}
+    values = {"HubRad": mount.hub_radius or 0.0, "PreCone(1)": float(np.degrees(mount.precone or 0.0))}
+    if mount.length is not None:
+        values = {"TipRad": mount.length + values["HubRad"], **values}
     said = "ElastoDyn's main file must say " + ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
-    if left.pitch:
-        theirs = 0.0 - float(np.degrees(left.pitch))
+    if mount.pitch:
+        theirs = 0.0 - float(np.degrees(mount.pitch))
         said += (
             f"; the pitch is in none of the files: BlPitch(1) = {theirs:.10g} in OpenFAST, --pitch {-theirs:.10g} here"
         )

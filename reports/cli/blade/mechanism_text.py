@@ -14,13 +14,13 @@ from ...shared.certain import certain, relative
 ROTATIONS = (".rx", ".ry", ".rz")
 
 
-def modes(found: Solution, title: str) -> Table:
+def modes(solution: Solution, title: str) -> Table:
     """The table of modes: frequency, damping ratio and dominant coordinate, without digits dominated by rounding error."""
     out = Table(box=box.SIMPLE_HEAD, title=escape(title), title_justify="left", title_style="bold")
     for head in ("mode", "rad/s", "Hz", "damping ratio", "± rounding"):
         out.add_column(head, justify="right")
     out.add_column("largest motion")
-    for row in _rows(found):
+    for row in _rows(solution):
         sure = np.inf if row["relative_uncertainty"] is None else row["relative_uncertainty"]
         numbers = (certain(row["frequency_rad_s"], sure), certain(row["frequency_hz"], sure))
         grows = row["damping_ratio"] < -max(1e-9, sure)
@@ -41,57 +41,57 @@ ROUNDING = 1e-14
 """Smaller values (m or rad) are rounding of zero and shown as 0; ``--json`` has them."""
 
 
-def state(found: Solution) -> Table:
+def state(solution: Solution) -> Table:
     """The table of coordinates: steady value, and whether the coordinate is independent, dependent or prescribed."""
     out = Table(box=box.SIMPLE_HEAD, title="steady state", title_justify="left", title_style="bold")
     out.add_column("coordinate")
     out.add_column("value", justify="right")
     out.add_column("")
     out.add_column("in vibration")
-    for name, value in found.steady.items():
+    for name, value in solution.steady.items():
         shown = f"{value:.7g}" if abs(value) > ROUNDING else "0"
-        out.add_row(escape(name), shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(found)[name])
+        out.add_row(escape(name), shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(solution)[name])
     return out
 
 
-def redundant(found: Solution) -> str:
+def redundant(solution: Solution) -> str:
     """One line on the redundant constraints."""
-    if not found.redundant:
+    if not solution.redundant:
         return "redundant constraints: none"
-    return f"redundant constraints: {len(found.redundant)}: {', '.join(found.redundant)}"
+    return f"redundant constraints: {len(solution.redundant)}: {', '.join(solution.redundant)}"
 
 
-def notes(found: Solution) -> list[str]:
+def notes(solution: Solution) -> list[str]:
     """Explanation of the uncertainties, and a remark on a large steady strain."""
     what = "± rounding: relative for frequencies, absolute for damping ratios; "
-    if not all(beam.beams.bushings.all() for beam in found.linear.tree.mechanism.beams):
+    if not all(beam.beams.bushings.all() for beam in solution.linear.tree.mechanism.beams):
         out = [
             what
             + "each beam is one element: the error of this discretisation is not included; divide the beams to see it"
         ]
     else:
         out = [what + "nothing is discretised, so there is no other numerical error"]
-    if found.strain > LARGE_STRAIN:
+    if solution.strain > LARGE_STRAIN:
         out.append(
-            f"steady strain up to {found.strain:.1%}: above {LARGE_STRAIN:.0%}, check that linear elastic sections describe "
+            f"steady strain up to {solution.strain:.1%}: above {LARGE_STRAIN:.0%}, check that linear elastic sections describe "
             "the beams"
         )
     return out
 
 
-def plain(name: str, found: Solution) -> dict[str, Any]:
+def plain(name: str, solution: Solution) -> dict[str, Any]:
     """All results as numbers, strings and lists."""
     return {
         "name": name,
-        "modes": _rows(found),
-        "steady": found.steady,
-        "independent": list(found.independent),
-        "redundant": list(found.redundant),
-        "steady_strain": found.strain,
+        "modes": _rows(solution),
+        "steady": solution.steady,
+        "independent": list(solution.independent),
+        "redundant": list(solution.redundant),
+        "steady_strain": solution.strain,
     }
 
 
-def _rows(found: Solution) -> list[dict[str, Any]]:
+def _rows(solution: Solution) -> list[dict[str, Any]]:
     return [
         {
             "mode": k,
@@ -102,15 +102,15 @@ def _rows(found: Solution) -> list[dict[str, Any]]:
             "led_by": led_by,
         }
         for k, (value, damping, sure, led_by) in enumerate(
-            zip(found.values.tolist(), found.damping, found.uncertainty, found.leading, strict=True), 1
+            zip(solution.values.tolist(), solution.damping, solution.uncertainty, solution.leading, strict=True), 1
         )
     ]
 
 
-def _roles(found: Solution) -> dict[str, str]:
-    part, names = found.linear.partition, found.coordinates
+def _roles(solution: Solution) -> dict[str, str]:
+    part, names = solution.linear.partition, solution.coordinates
     follows = {names[j] for j in part.dependent}
     return {
-        name: "independent" if name in found.independent else "follows" if name in follows else "prescribed"
+        name: "independent" if name in solution.independent else "follows" if name in follows else "prescribed"
         for name in names
     }

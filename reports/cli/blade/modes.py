@@ -162,16 +162,16 @@ def mechanism(
         Print JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is that of rounding.
     """
     described = library.mechanism(name)
-    found = described.solve(modes, time, allow_large_strain)
+    solution = described.solve(modes, time, allow_large_strain)
     if json:
-        plain = msgspec.json.encode(answer.plain(described.text.name, found))
+        plain = msgspec.json.encode(answer.plain(described.text.name, solution))
         print(msgspec.json.format(plain).decode())
         return PASSED
     console = output()
-    console.print(answer.modes(found, described.text.title or described.text.name))
-    console.print(answer.state(found))
-    console.print(answer.redundant(found), markup=False, soft_wrap=True)
-    for line in answer.notes(found):
+    console.print(answer.modes(solution, described.text.title or described.text.name))
+    console.print(answer.state(solution))
+    console.print(answer.redundant(solution), markup=False, soft_wrap=True)
+    for line in answer.notes(solution):
         console.print(line, markup=False, soft_wrap=True)
     return PASSED
 

@@ -137,9 +137,9 @@ def write(blade: Blade, folder: Path, loads: Sequence[RootLoads] = ()) -> list[P
 
     folder.mkdir(parents=True, exist_ok=True)
     table = folder / "stations.csv"
-    found = sections(blade)
-    angles = np.degrees([found.principal, found.mass_axes]).T
-    values = np.column_stack([rows(blade, found), angles, blade.curve])
+    sampled = sections(blade)
+    angles = np.degrees([sampled.principal, sampled.mass_axes]).T
+    values = np.column_stack([rows(blade, sampled), angles, blade.curve])
     written = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
     lines = [",".join(COLUMNS + MORE), *written]
     atomic.write(table, "\n".join(lines) + "\n")

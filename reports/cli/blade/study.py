@@ -76,12 +76,12 @@ def command(
             return stopped[1]
         if out != path:
             parquet.write(out, path, head)
-        found = outcome(read(path))
+        result = outcome(read(path))
         if summary:
             console = output()
             console.print(tables.terminal(_sheet(path, asked), console.width))
-    output().print(f"{out}: {_said(found, head)}", markup=False, soft_wrap=True)
-    return FAILED if found.missing else PASSED
+    output().print(f"{out}: {_said(result, head)}", markup=False, soft_wrap=True)
+    return FAILED if result.missing else PASSED
 
 
 def _run(study: Study, journal: StudyJournal, workers: int | None, scheduler: str | None) -> tuple[str, int] | None:
@@ -101,12 +101,12 @@ def _run(study: Study, journal: StudyJournal, workers: int | None, scheduler: st
     return None
 
 
-def _said(found: Outcome, head: Header) -> str:
-    said = f"{found.frequencies} frequencies of {head.tasks} samples at {len(head.speeds_rad_s)} speeds"
-    if found.missing:
-        said += f"; {found.missing} speeds of samples without one (first: {found.reason})"
-    if found.internal:
-        said += f"; {found.internal} of these are internal errors: please report them"
+def _said(result: Outcome, head: Header) -> str:
+    said = f"{result.frequencies} frequencies of {head.tasks} samples at {len(head.speeds_rad_s)} speeds"
+    if result.missing:
+        said += f"; {result.missing} speeds of samples without one (first: {result.reason})"
+    if result.internal:
+        said += f"; {result.internal} of these are internal errors: please report them"
     return said
 
 

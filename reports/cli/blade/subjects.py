@@ -50,14 +50,14 @@ class Subject:
     files: tuple[Path, ...] = ()
 
 
-def changed(found: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
+def changed(chosen: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
     """The subjects with changed properties; ``about`` lists the changes.
 
     Raises:
         CaseError: if a blade does not allow a change.
     """
     lines = tuple(f"changed: {change}" for change in given)
-    return [replace(s, blade=changes.apply(s.blade, given), about=(*s.about, *lines)) for s in found]
+    return [replace(s, blade=changes.apply(s.blade, given), about=(*s.about, *lines)) for s in chosen]
 
 
 def single(name: str, mount: Mount, rotating: bool = True) -> Subject:
@@ -66,10 +66,10 @@ def single(name: str, mount: Mount, rotating: bool = True) -> Subject:
     Raises:
         CaseError: as ``subjects``, or if the case has several blades.
     """
-    found = subjects(name, mount if is_blade_file(name) else Mount(), rotating)
-    if len(found) > 1:
-        raise CaseError(f"{name}: {len(found)} blades ({', '.join(s.blade.name for s in found)}): name one of them")
-    return found[0]
+    blades = subjects(name, mount if is_blade_file(name) else Mount(), rotating)
+    if len(blades) > 1:
+        raise CaseError(f"{name}: {len(blades)} blades ({', '.join(s.blade.name for s in blades)}): name one of them")
+    return blades[0]
 
 
 def subjects(name: str, mount: Mount, rotating: bool = True) -> list[Subject]:
@@ -81,12 +81,12 @@ def subjects(name: str, mount: Mount, rotating: bool = True) -> list[Subject]:
         CaseError: if there is no such file or case, the file has an error, or the hub radius is unknown.
     """
     if is_blade_file(name):
-        found = readers.reading(Path(name), mount)
-        files = ", ".join(path.name for path in found.source.files)
-        about = (f"{found.source.format}: {files}", f"axes: {found.source.axes}", *found.source.notes)
-        speeds = () if found.speed is None else (found.speed,)
-        blade = found.mounted(Path(name)) if rotating else found.blade
-        return [Subject(blade, speeds, RPM, about, found.source.notes, found.source.unused, found.source.files)]
+        reading = readers.reading(Path(name), mount)
+        files = ", ".join(path.name for path in reading.source.files)
+        about = (f"{reading.source.format}: {files}", f"axes: {reading.source.axes}", *reading.source.notes)
+        speeds = () if reading.speed is None else (reading.speed,)
+        blade = reading.mounted(Path(name)) if rotating else reading.blade
+        return [Subject(blade, speeds, RPM, about, reading.source.notes, reading.source.unused, reading.source.files)]
     case = select(name)
     if mount != Mount():
         raise CaseError(f"{name}: a case defines how its blade is mounted: leave out --main, --length and the like")

@@ -39,28 +39,28 @@ def run(name: str, modes: int, json: bool, **given: bool) -> None:
             raise UsageError(f"--{option.replace('_', '-')}: {name} is a tower, which does not turn: leave it out")
     tower, source = towers.read(Path(name))
     try:
-        found = tower_modes(tower, modes)
+        solved = tower_modes(tower, modes)
     except NO_STATE as error:
         raise CaseError(f"{name}: {error}") from error
     if json:
-        print(msgspec.json.format(msgspec.json.encode(_rows(tower.beam.name, found))).decode())
+        print(msgspec.json.format(msgspec.json.encode(_rows(tower.beam.name, solved))).decode())
         return
     console = output()
-    console.print(tables.terminal(_sheet(tower.beam.name, found), console.width))
+    console.print(tables.terminal(_sheet(tower.beam.name, solved), console.width))
     files = ", ".join(file.name for file in source.files)
     for line in (f"{source.format}: {files}", f"axes: {source.axes}", *source.notes):
         console.print(line, style="dim", markup=False)
     not_used.show(source.unused, console)
 
 
-def _sheet(name: str, found: TowerModes) -> Sheet:
+def _sheet(name: str, solved: TowerModes) -> Sheet:
     rows = [
         (label, certain(frequency, doubt), relative(doubt), f"{100 * part:.0f} %")
         for label, frequency, doubt, part in zip(
-            found.names,
-            (found.frequencies / (2 * np.pi)).tolist(),
-            found.uncertainty.tolist(),
-            found.confidence.tolist(),
+            solved.names,
+            (solved.frequencies / (2 * np.pi)).tolist(),
+            solved.uncertainty.tolist(),
+            solved.confidence.tolist(),
             strict=True,
         )
     ]
@@ -68,16 +68,16 @@ def _sheet(name: str, found: TowerModes) -> Sheet:
     return Sheet(f"{name}: natural frequencies", ("mode", "Hz", "± relative", "confidence"), tuple(rows), note)
 
 
-def _rows(name: str, found: TowerModes) -> list[dict[str, object]]:
+def _rows(name: str, solved: TowerModes) -> list[dict[str, object]]:
     return [
         {
             "tower": name,
             "mode": k + 1,
-            "name": found.names[k],
-            "frequency_rad_s": float(found.frequencies[k]),
-            "frequency_hz": float(found.frequencies[k] / (2 * np.pi)),
-            "relative_uncertainty": float(found.uncertainty[k]),
-            "confidence": float(found.confidence[k]),
+            "name": solved.names[k],
+            "frequency_rad_s": float(solved.frequencies[k]),
+            "frequency_hz": float(solved.frequencies[k] / (2 * np.pi)),
+            "relative_uncertainty": float(solved.uncertainty[k]),
+            "confidence": float(solved.confidence[k]),
         }
-        for k in range(len(found.names))
+        for k in range(len(solved.names))
     ]

@@ -33,8 +33,8 @@ def load(path: Path) -> dict[Any, Any]:
 
 
 def steps(path: Path) -> Iterator[dict[str, Any]]:
-    found = load(path)
-    for job in [found["runs"]] if "runs" in found else found["jobs"].values():
+    loaded = load(path)
+    for job in [loaded["runs"]] if "runs" in loaded else loaded["jobs"].values():
         yield from job.get("steps", ())  # none if it calls another workflow
 
 
@@ -58,14 +58,14 @@ def test_is_sound_shell(script: str) -> None:
 
 def lines() -> dict[str, str]:
     """Every line that calls southwell, with the options that its script may add to it."""
-    found = {}
+    by_step = {}
     for name, script in scripts().items():
         more = " ".join(re.findall(r"options\+?=\((.*?)\)", script))
         for k, line in enumerate(
             re.findall(r"(?<![\w./-])southwell (?!\()([a-z].*?)(?: \|\|.*)?$", script, re.MULTILINE)
         ):
-            found[f"{name}: {k}: {line}"] = line.replace('"${options[@]}"', more)
-    return found
+            by_step[f"{name}: {k}: {line}"] = line.replace('"${options[@]}"', more)
+    return by_step
 
 
 def test_there_are_such_lines() -> None:
@@ -75,8 +75,8 @@ def test_there_are_such_lines() -> None:
 
 @pytest.mark.parametrize("line", lines().values(), ids=lines())
 def test_southwell_understands_it(line: str) -> None:
-    known = re.sub(r'"?\$\{\w+\[@\]\}"?|\$(against|CASES)|"\$@"', "", line)
-    tokens = shlex.split(re.sub(r"\$\w+", "something", known))
+    words = re.sub(r'"?\$\{\w+\[@\]\}"?|\$(against|CASES)|"\$@"', "", line)
+    tokens = shlex.split(re.sub(r"\$\w+", "something", words))
     command, *_ = cli.app.parse_args(tokens, exit_on_error=False, print_error=False)
     assert command.__module__.startswith("southwell.reports.")
 
@@ -117,7 +117,7 @@ def test_the_action_keeps_the_store_of_answers_where_southwell_writes_it(monkeyp
         for s in steps(ACTION)
         if s.get("uses", "").startswith(("actions/cache/restore", "actions/cache/save"))
     ]
-    assert {Path(one["path"]).expanduser() for one in kept} == {store.path()}
+    assert {Path(step["path"]).expanduser() for step in kept} == {store.path()}
     restored, saved = kept
     assert restored["key"] == saved["key"]
     assert saved["key"].startswith(restored["restore-keys"])
@@ -125,7 +125,7 @@ def test_the_action_keeps_the_store_of_answers_where_southwell_writes_it(monkeyp
 
 def action(tmp_path: Path, **inputs: str) -> tuple[int, str]:
     """Run the action's scripts that call southwell, as they stand, in their order; status, and what they printed."""
-    given = {name: one["default"] for name, one in load(ACTION)["inputs"].items()} | inputs
+    given = {name: entry["default"] for name, entry in load(ACTION)["inputs"].items()} | inputs
     shown = ""
     for step in steps(ACTION):
         if "southwell" in step.get("run", ""):

@@ -297,15 +297,15 @@ def heeding() -> None:
 
 def running(mark: Path) -> list[str]:
     """Processes with ``mark`` in their environment: those that the run has started."""
-    found = []
+    processes = []
     for entry in Path("/proc").glob("[0-9]*/environ"):
         try:
             text = entry.read_bytes()
         except OSError:
             continue
         if f"SOUTHWELL_TEST={mark}\0".encode() in text:
-            found.append(entry.parent.name)
-    return found
+            processes.append(entry.parent.name)
+    return processes
 
 
 def gone(mark: Path) -> bool:

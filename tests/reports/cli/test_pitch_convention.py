@@ -50,9 +50,9 @@ def test_show_says_both_signs(capsys: pytest.CaptureFixture[str]) -> None:
 
 @pytest.mark.parametrize("file", ["elastodyn_main.dat", "elastodyn_blade.dat", "fast7_main.fst"])
 def test_the_initial_pitch_is_listed_and_not_used(file: str) -> None:
-    found = readers.reading(DATA / file)
-    assert found.blade.pitch == 0.0
-    (pitch,) = [u for u in found.source.unused if u.name == "BlPitch"]
+    reading = readers.reading(DATA / file)
+    assert reading.blade.pitch == 0.0
+    (pitch,) = [u for u in reading.source.unused if u.name == "BlPitch"]
     assert f"--pitch {pitch.values[0]:g} --pitch-convention openfast" in pitch.why
 
 

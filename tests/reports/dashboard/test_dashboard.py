@@ -33,9 +33,9 @@ LARGEST_FIRST_PAGE = 1.5e6
 
 def data(path: Path) -> Any:
     text = path.read_text(encoding="utf-8")
-    found = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)
-    assert found
-    return json.loads(found[1])
+    element = re.search(r'<script type="application/json" id="data">(.*?)</script>', text, re.S)
+    assert element
+    return json.loads(element[1])
 
 
 @pytest.fixture(scope="module")
@@ -97,8 +97,8 @@ def palettes() -> list[dict[str, Any]]:
     style = files("southwell.reports.dashboard").joinpath("templates", "dashboard.css").read_text(encoding="utf-8")
     out = []
     for block in re.findall(r":root \{(.*?)\}", style, re.S):
-        found = dict(re.findall(r"--(\w+):(#\w+)", block))
-        full = {k: v if len(v) == 7 else "#" + "".join(2 * c for c in v[1:]) for k, v in found.items()}
+        colours = dict(re.findall(r"--(\w+):(#\w+)", block))
+        full = {k: v if len(v) == 7 else "#" + "".join(2 * c for c in v[1:]) for k, v in colours.items()}
         rgb = {k: np.array([int(v[i : i + 2], 16) / 255 for i in (1, 3, 5)]) for k, v in full.items()}
         out.append({k: np.where(v <= 0.04045, v / 12.92, ((v + 0.055) / 1.055) ** 2.4) for k, v in rgb.items()})
     return out
@@ -176,9 +176,9 @@ def test_page_names_are_files_whatever_the_case_is_called() -> None:
 def test_moving_shapes_are_the_beams() -> None:
     """A cantilever at rest: φ(½)/φ(1) = 0.33952, and the second mode's node lies at 0.7834 (Young and Felgar 1949)."""
     cells = [c for c in run().cells if c.case == "park-cantilever" and c.omega == 0.0]
-    found = moving("park-cantilever", cells, RAD_S)
-    assert found
-    at_rest = found["speeds"][0]["modes"]
+    shapes_of_beam = moving("park-cantilever", cells, RAD_S)
+    assert shapes_of_beam
+    at_rest = shapes_of_beam["speeds"][0]["modes"]
     flap = {m["name"]: np.array(m["re"])[:, 2] + 1j * np.array(m["im"])[:, 2] for m in at_rest}
     assert abs(flap["flapwise 1"][10] / flap["flapwise 1"][20]) == pytest.approx(0.33952, abs=2e-4)
     second = (flap["flapwise 2"] / flap["flapwise 2"][20]).real
@@ -193,10 +193,10 @@ def test_a_rotor_without_a_steady_state_has_no_shapes(monkeypatch: pytest.Monkey
     (blade,) = (v.blade for v in library.load("park-cantilever").variants)
     soft = replace(blade, stiffness=1e-9 * blade.stiffness)
 
-    def found(case: str) -> Blade:
+    def unsteady(case: str) -> Blade:
         return soft
 
-    monkeypatch.setattr(shapes, "_blade", found)
+    monkeypatch.setattr(shapes, "_blade", unsteady)
     cells = [c for c in run().cells if c.case == "park-cantilever" and c.omega == 30.0]
     shown = moving("park-cantilever", [replace(c, full=None) for c in cells], RAD_S)
     assert shown is not None
@@ -225,14 +225,14 @@ def test_the_history_has_damping_ratios() -> None:
 
 
 def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
-    found = moves(history.read(kept(tmp_path / "h.jsonl")).entries)
-    assert {(m["run"], m["who"], m["case"]) for m in found} == {
+    changes = moves(history.read(kept(tmp_path / "h.jsonl")).entries)
+    assert {(m["run"], m["who"], m["case"]) for m in changes} == {
         (4, "scikit-fem", "tip-mass"),
         (5, CORE, "wright-flapwise"),
     }
-    assert [m["change"] for m in found] == [pytest.approx(1e-6, rel=1e-6), pytest.approx(1e-5, rel=1e-6)]
+    assert [m["change"] for m in changes] == [pytest.approx(1e-6, rel=1e-6), pytest.approx(1e-5, rel=1e-6)]
     wright = {(c.omega, c.mode) for c in run().cells if c.case == "wright-flapwise" and c.value}
-    assert next(m["count"] for m in found if m["who"] == CORE) == len(wright)
+    assert next(m["count"] for m in changes if m["who"] == CORE) == len(wright)
 
 
 def test_every_number_is_in_the_history(tmp_path: Path) -> None:

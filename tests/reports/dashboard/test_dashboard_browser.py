@@ -189,8 +189,8 @@ def test_campbell_diagram(tab: Any, site: Path) -> None:
     assert diagram.locator("polyline").count() == lines
     points = diagram.locator("circle").count()
     tab.select_option("select[name=marks]", "pinocchio")
-    mine = [c for c in run().cells if (c.case, c.code) == ("park-cantilever", "pinocchio") and c.mode]
-    assert diagram.locator("circle").count() == len(mine) < points
+    own = [c for c in run().cells if (c.case, c.code) == ("park-cantilever", "pinocchio") and c.mode]
+    assert diagram.locator("circle").count() == len(own) < points
 
 
 def scale(chart: Any, across: bool) -> Any:
@@ -231,14 +231,14 @@ def test_cores_line_passes_through_cores_frequencies(tab: Any, site: Path) -> No
     diagram = tab.locator("svg[aria-label='Campbell diagram']")
     x, y = scale(diagram, True), scale(diagram, False)
     cells = [c for c in run().cells if c.case == "park-cantilever" and c.reference == c.full and c.mode == 1]
-    known = {c.omega: c.full or 0.0 for c in cells}
+    by_speed = {c.omega: c.full or 0.0 for c in cells}
     first = diagram.locator("g").filter(has=tab.locator("title", has_text=re.compile("^(edgewise|mode) 1$")))
     line = points(first.locator("polyline").first)
     speeds, frequencies = x(line[:, 0]), y(line[:, 1])
-    for omega, f in known.items():
+    for omega, f in by_speed.items():
         assert np.interp(omega, speeds, frequencies) == pytest.approx(f, abs=0.5)
-    a, b = sorted(known)[:2]
-    between = np.sqrt((known[a] ** 2 + known[b] ** 2) / 2)  # at the mean of the squared speeds
+    a, b = sorted(by_speed)[:2]
+    between = np.sqrt((by_speed[a] ** 2 + by_speed[b] ** 2) / 2)  # at the mean of the squared speeds
     assert np.interp(np.sqrt((a * a + b * b) / 2), speeds, frequencies) == pytest.approx(between, abs=0.5)
 
 

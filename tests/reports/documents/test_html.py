@@ -107,15 +107,15 @@ def test_every_verdict_in_a_table_has_its_class_and_keeps_its_word(folder: Path)
 
 def test_a_verdict_has_one_colour_in_the_report_and_in_the_dashboard() -> None:
     style = files("southwell.reports.dashboard").joinpath("templates", "dashboard.css").read_text(encoding="utf-8")
-    known = {"pass": "pass", "known-difference": "known", "inconclusive": "open", "fail": "fail"}
-    for name, colour in known.items():
-        here, there = (
+    short_names = {"pass": "pass", "known-difference": "known", "inconclusive": "open", "fail": "fail"}
+    for name, colour in short_names.items():
+        in_report, in_dashboard = (
             re.search(rf"td\.{name}, p\.{name} {{ background: (#\w+)", html.STYLE),
             re.search(rf"--{colour}:(#\w+)", style),
         )
-        assert here
-        assert there
-        assert here[1] == there[1]
+        assert in_report
+        assert in_dashboard
+        assert in_report[1] == in_dashboard[1]
 
 
 def test_lines_break_before_an_uncertainty_only(folder: Path) -> None:

@@ -47,9 +47,9 @@ def test_every_markup_of_markdown_has_a_layout(tmp_path: Path) -> None:
     )
     reader = rendered(text, tmp_path)
     assert missing(text, reader) == []
-    there = words(reader)
+    printed = words(reader)
     for said in ("indentedcode", "fenced`code`$x", "More<b>", "1.one", "3.loose", "notshown"):
-        assert said in there
+        assert said in printed
     assert {a["/A"]["/URI"] for a in annotations(reader)} == {"https://example.org/a?b=c", "https://example.org"}
 
 
@@ -205,8 +205,8 @@ def test_without_typst_it_says_what_to_install(
 ) -> None:
     write(tmp_path / arguments.RESULTS, samples.run())
     monkeypatch.setitem(sys.modules, "typst", None)
-    with pytest.raises(CaseError, match=r"pip install '\.\[pdf\]'") as found:
+    with pytest.raises(CaseError, match=r"pip install '\.\[pdf\]'") as error:
         command.command(tmp_path, pdf=True)
-    assert "\n" not in str(found.value)
+    assert "\n" not in str(error.value)
     assert not (tmp_path / "report.pdf").exists()
     assert not (tmp_path / "report.md").exists()  # refused before the work

@@ -69,6 +69,6 @@ def test_a_figure_that_reads_a_file_or_is_damaged_is_an_error(tmp_path: Path, in
     for address in ("secret.png", str(tmp_path / "secret.png"), "https://example.org/x.png"):
         svg = f'<svg xmlns="http://www.w3.org/2000/svg" width="9" height="9">{inner.format(address)}</svg>'
         (tmp_path / "f.svg").write_text(svg, encoding="utf-8")
-        with pytest.raises(pdf.PdfError, match=r"--pdf: .*SVG.*--html") as found:
+        with pytest.raises(pdf.PdfError, match=r"--pdf: .*SVG.*--html") as error:
             pdf.render("![x](f.svg)\n", tmp_path)
-        assert "\n" not in str(found.value)
+        assert "\n" not in str(error.value)

@@ -26,16 +26,16 @@ def blade() -> southwell.Blade:
 
 
 def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) -> None:
-    found, core = southwell.modes(blade, OMEGA, modes=3), solve.modes(blade, OMEGA, count=3)
-    frame = found.to_frame()
-    assert isinstance(found, southwell.Modes)
+    result, core = southwell.modes(blade, OMEGA, modes=3), solve.modes(blade, OMEGA, count=3)
+    frame = result.to_frame()
+    assert isinstance(result, southwell.Modes)
     assert frame["name"].tolist() == ["edgewise 1", "flapwise 1", "edgewise 2"]
     np.testing.assert_allclose(frame["frequency_rad_s"], core.frequencies, rtol=1e-12)
     np.testing.assert_allclose(frame["frequency_hz"] * 2 * np.pi, core.frequencies, rtol=1e-12)
     assert max(frame["uncertainty"]) <= 1e-6
-    assert repr(found) == "<3 modes of park-cantilever at 10 rad/s: 1.864, 2.451, 11.21 Hz>"
-    assert "<table" in found._repr_html_()
-    axes = found.plot(modes=2)
+    assert repr(result) == "<3 modes of park-cantilever at 10 rad/s: 1.864, 2.451, 11.21 Hz>"
+    assert "<table" in result._repr_html_()
+    axes = result.plot(modes=2)
     assert isinstance(axes, Axes)
     assert [np.asarray(line.get_xydata())[-1].tolist() for line in axes.lines] == [
         [blade.length, pytest.approx(1.0)]
@@ -76,39 +76,39 @@ def test_a_blade_has_a_short_text() -> None:
 
 
 def test_a_diagram_has_the_frequencies_of_each_speed_in_the_unit_given(blade: southwell.Blade) -> None:
-    found = southwell.campbell(blade, rpm="0:60:30", modes=2, operating=(30, 60), elements=20)
-    frame = found.to_frame()
+    result = southwell.campbell(blade, rpm="0:60:30", modes=2, operating=(30, 60), elements=20)
+    frame = result.to_frame()
     assert frame.index.name == "rotor speed, rpm"
     assert frame.index.tolist() == pytest.approx([0.0, 30.0, 60.0])
     for rpm, row in frame.iterrows():
         core = solve.modes(blade, float(str(rpm)) * np.pi / 30, 20, 2).frequencies / (2 * np.pi)
         np.testing.assert_allclose(np.sort(row), core, rtol=1e-9)
-    margins = found.margins()
+    margins = result.margins()
     assert len(margins) == 2 * 6
     first = frame.columns[0]
     ends = np.asarray(margins.query("mode == @first and per_rev == 2")[["low", "high"]])[0]
     np.testing.assert_allclose(ends, frame[first].loc[[30.0, 60.0]] / [1.0, 2.0] - 1.0, rtol=1e-6)
-    assert repr(found) == "<Campbell diagram of park-cantilever: 2 modes, 3 speeds from 0 to 60 rpm>"
-    assert found.verdict
-    assert "<table" in found._repr_html_()
-    assert found.plot(interactive=False).get_xlabel() == "rotor speed, rpm"
+    assert repr(result) == "<Campbell diagram of park-cantilever: 2 modes, 3 speeds from 0 to 60 rpm>"
+    assert result.verdict
+    assert "<table" in result._repr_html_()
+    assert result.plot(interactive=False).get_xlabel() == "rotor speed, rpm"
 
 
 def test_a_verification_has_a_row_for_every_cell_and_a_verdict(blade: southwell.Blade) -> None:
-    found = southwell.verify(blade, omega=[0.0, OMEGA], codes=["exact-beam"], modes=2)
-    frame = found.to_frame()
-    mine = frame[frame["code"] == "exact-beam"]
-    assert len(mine) == 4
-    assert set(mine["verdict"]) == {"pass"}
-    assert set(mine["omega_rad_s"]) == {0.0, OMEGA}
-    np.testing.assert_allclose(mine["value"] / mine["reference"] - 1.0, mine["difference"], atol=1e-12)
-    assert found.passed
-    evidence = found.evidence().set_index("code")
+    result = southwell.verify(blade, omega=[0.0, OMEGA], codes=["exact-beam"], modes=2)
+    frame = result.to_frame()
+    exact = frame[frame["code"] == "exact-beam"]
+    assert len(exact) == 4
+    assert set(exact["verdict"]) == {"pass"}
+    assert set(exact["omega_rad_s"]) == {0.0, OMEGA}
+    np.testing.assert_allclose(exact["value"] / exact["reference"] - 1.0, exact["difference"], atol=1e-12)
+    assert result.passed
+    evidence = result.evidence().set_index("code")
     assert evidence.loc["exact-beam", "modes"] == 4
-    assert evidence.loc["exact-beam", "difference"] == np.abs(mine["difference"]).max()
-    assert "pass" in repr(found)
-    assert "<table" in found._repr_html_()
-    assert found.plot().get_xscale() == "log"
+    assert evidence.loc["exact-beam", "difference"] == np.abs(exact["difference"]).max()
+    assert "pass" in repr(result)
+    assert "<table" in result._repr_html_()
+    assert result.plot().get_xscale() == "log"
 
 
 def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blade) -> None:

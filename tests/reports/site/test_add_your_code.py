@@ -77,18 +77,18 @@ def cells(folder: Path, part: str, installed: bool = False) -> list[results.Cell
 @pytest.mark.slow
 def test_it_is_in_the_matrix(folder: Path) -> None:
     """Passes, or known differences by what it says it leaves out; nothing else."""
-    found = cells(folder, "--codes my_code:CODE")
-    assert len(found) == 42
-    assert {c.verdict for c in found} == {"pass", "known difference"}
-    assert all("no coriolis" in c.reason for c in found if c.verdict == "known difference")
-    assert sum(c.verdict == "pass" for c in found) > 38
+    rows = cells(folder, "--codes my_code:CODE")
+    assert len(rows) == 42
+    assert {c.verdict for c in rows} == {"pass", "known difference"}
+    assert all("no coriolis" in c.reason for c in rows if c.verdict == "known difference")
+    assert sum(c.verdict == "pass" for c in rows) > 38
 
 
 @pytest.mark.nightly
 def test_once_installed_it_goes_by_its_name(folder: Path) -> None:
-    found = cells(folder, "--codes my-code", installed=True)
-    assert len(found) == 21
-    assert {c.verdict for c in found} == {"pass"}
+    rows = cells(folder, "--codes my-code", installed=True)
+    assert len(rows) == 21
+    assert {c.verdict for c in rows} == {"pass"}
 
 
 @pytest.mark.slow

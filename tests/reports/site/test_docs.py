@@ -73,18 +73,18 @@ def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
     made = site.cases() | site.api()
     named = leaves(configuration()["nav"])
     assert set(PAGES) <= set(named), "add it to the nav of mkdocs.yml"
-    there = {*PAGES, *made, "codes/index.md", "cli.md", "results.md", "first-blade.md"}
-    assert set(named) <= there
+    pages = {*PAGES, *made, "codes/index.md", "cli.md", "results.md", "first-blade.md"}
+    assert set(named) <= pages
     assert len(named) == len(set(named))
 
 
 def test_a_page_for_every_case_with_the_words_of_its_file() -> None:
     made = site.cases()
-    known, absent = library.everything()
-    assert {f"cases/{name}.md" for name in {*known, *library.mechanisms(), *library.turbines()}} == set(made) - {
+    cases, absent = library.everything()
+    assert {f"cases/{name}.md" for name in {*cases, *library.mechanisms(), *library.turbines()}} == set(made) - {
         "cases/index.md"
     }
-    for name, case in known.items():
+    for name, case in cases.items():
         first, *rest = settings(case)
         text = re.sub(r"\\(.)", r"\1", str(made[f"cases/{name}.md"]))
         assert first.description.replace("&", "&amp;").replace("<", "&lt;").replace(">", "&gt;") in text

@@ -41,16 +41,16 @@ def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_thro
     rows = [line.strip("| ").split(" | ") for line in readme.five(run).splitlines()[2:]]
     assert len(rows) == len(readme.SHOWN) == 5
     for (_, codes, largest, others, _), case in zip(rows, readme.SHOWN, strict=True):
-        mine = [c for c in run.cells if c.case == case and c.code in codes.split(", ") and c.role == "code"]
-        assert {c.verdict for c in mine} == {"pass"}
-        assert {c.shares for c in mine} == {"nothing"}
-        worst = max(mine, key=lambda c: abs(c.difference or 0.0))
+        own = [c for c in run.cells if c.case == case and c.code in codes.split(", ") and c.role == "code"]
+        assert {c.verdict for c in own} == {"pass"}
+        assert {c.shares for c in own} == {"nothing"}
+        worst = max(own, key=lambda c: abs(c.difference or 0.0))
         assert largest == summary.plus_minus(worst)
         foreign = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
         answered = {c.code for c in foreign if c.verdict not in ("not run", "not applicable")}
-        reported = set() if others == "–" else {one.partition(" (")[0] for one in others.split(", ")}
-        assert {readme.plain(c.code) for c in mine} | reported == {readme.plain(code) for code in answered}
-        assert not {c.code for c in mine} & reported
+        reported = set() if others == "–" else {entry.partition(" (")[0] for entry in others.split(", ")}
+        assert {readme.plain(c.code) for c in own} | reported == {readme.plain(code) for code in answered}
+        assert not {c.code for c in own} & reported
 
 
 @pytest.mark.slow
@@ -104,9 +104,9 @@ def cores() -> list[float]:
 
 def test_cores_frequencies_in_the_table_are_those_that_core_gives_now() -> None:
     case = library.load(CASE)
-    (found,) = core_solver.converged(case.variants[0].blade, [OMEGA], case.text.compare, ALL_EFFECTS)
-    assert isinstance(found, core_solver.Converged)
-    estimates = [s.estimate.value for s in found.modes if s.estimate]
+    (converged,) = core_solver.converged(case.variants[0].blade, [OMEGA], case.text.compare, ALL_EFFECTS)
+    assert isinstance(converged, core_solver.Converged)
+    estimates = [s.estimate.value for s in converged.modes if s.estimate]
     np.testing.assert_allclose(cores(), estimates, rtol=1e-9, err_msg="run `make verify` and `make readme`")
 
 
@@ -124,8 +124,8 @@ def test_the_papers_own_discretisation_in_the_table_rounds_to_the_printed_digits
     assert [f"{f:.4g}" for f in sorted(f for f in edgewise if f)] == ["11.71", "70.37", "189.7"]
     blade = library.load(CASE).variants[0].blade
     model = Effects(rotary_inertia=False)
-    found = modes(blade, OMEGA, 50, 6, mass="half_end", stiffness="body_fixed", effects=model).frequencies
-    np.testing.assert_allclose(sorted({c.value for c in cells if c.value}), found, rtol=1e-9)
+    frequencies = modes(blade, OMEGA, 50, 6, mass="half_end", stiffness="body_fixed", effects=model).frequencies
+    np.testing.assert_allclose(sorted({c.value for c in cells if c.value}), frequencies, rtol=1e-9)
 
 
 def test_condensed_rows_give_the_same_heat_table_as_all_rows() -> None:

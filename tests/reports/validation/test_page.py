@@ -36,12 +36,12 @@ def test_a_line_of_two_modes_is_their_mean_and_their_distance_is_uncertain() -> 
 
 
 def test_every_measured_point_is_on_the_page() -> None:
-    found = points(model(0.02))
-    assert len(found) == sum(len(line["points"]) for line in comparison.data()["lines"])
+    measured = points(model(0.02))
+    assert len(measured) == sum(len(line["points"]) for line in comparison.data()["lines"])
     beams = {name: tuple(of_beam(name)) for name in rotating_beams.BEAMS}
-    text, *drawn = page.pages(model(0.02), found, beams).values()
+    text, *drawn = page.pages(model(0.02), measured, beams).values()
     stated = text.count("| model error not visible at") + text.count("| model error visible (at")
-    assert stated == len(found) + sum(map(len, beams.values()))
+    assert stated == len(measured) + sum(map(len, beams.values()))
     assert "contradicts" not in text.replace("does not confirm or contradict a solver", "")
     assert [figure.startswith("<svg") for figure in drawn] == [True, True]
 

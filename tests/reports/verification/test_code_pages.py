@@ -15,8 +15,8 @@ from southwell.reports.verification import code_pages
 
 
 def described(name: str) -> Description:
-    (one,) = code_pages.described([name])
-    return one
+    (description,) = code_pages.described([name])
+    return description
 
 
 def cell(code: str, case: str, difference: float | None, verdict: Verdict, mode: int = 1, reason: str = "") -> Cell:

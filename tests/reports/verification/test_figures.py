@@ -70,10 +70,10 @@ def test_campbell_lines_run_through_cores_values_and_markers_are_the_codes(units
     marks = {line.get_label(): line for line in axes.lines if line.get_linestyle() == "None"}
     assert set(marks) == set(samples.CODES)
     for code, line in marks.items():
-        mine = [c for c in samples.run().cells if c.code == code and c.case == "beam"]
+        own = [c for c in samples.run().cells if c.code == code and c.case == "beam"]
         x, y = points(line)
-        np.testing.assert_allclose(y, [(c.value or 0.0) * units.frequencies for c in mine])
-        np.testing.assert_allclose(x, [c.omega * units.speeds for c in mine])
+        np.testing.assert_allclose(y, [(c.value or 0.0) * units.frequencies for c in own])
+        np.testing.assert_allclose(x, [c.omega * units.speeds for c in own])
 
 
 def test_rays_are_multiples_of_the_rotors_speed() -> None:
@@ -183,19 +183,19 @@ def test_a_wide_target_is_told_clear_of_the_next_heading() -> None:
     for run, phrase in ((wide, "target 2.00 %"), (Run((samples.cell(target=1e-8, difference=1e-13),)), "target 1e-08")):
         figure = drawn(differences(run, "beam", RAD_S))
         figure.draw_without_rendering()
-        known = {t.get_text(): t.get_window_extent() for t in labels(figure.axes[0])}
-        assert known[phrase].x1 + 10 < known["largest"].x0
+        extents = {t.get_text(): t.get_window_extent() for t in labels(figure.axes[0])}
+        assert extents[phrase].x1 + 10 < extents["largest"].x0
 
 
 @given(st.lists(st.floats(-100, 100), max_size=8), st.floats(0.1, 30))
-def test_spread_keeps_order_and_distance_and_moves_no_more_than_it_must(wanted: list[float], gap: float) -> None:
-    found = spread(wanted, gap)
-    order = np.argsort(wanted, kind="stable")
-    placed = np.array(found)[order] if found else np.zeros(0)
+def test_spread_keeps_order_and_distance_and_moves_no_more_than_it_must(targets: list[float], gap: float) -> None:
+    positions = spread(targets, gap)
+    order = np.argsort(targets, kind="stable")
+    placed = np.array(positions)[order] if positions else np.zeros(0)
     assert (np.diff(placed) >= gap * (1 - 1e-9)).all()
-    if len(wanted) < 2 or np.diff(np.sort(wanted)).min() >= gap:
-        assert found == wanted
-    assert sum(found) == pytest.approx(sum(wanted), abs=1e-6)
+    if len(targets) < 2 or np.diff(np.sort(targets)).min() >= gap:
+        assert positions == targets
+    assert sum(positions) == pytest.approx(sum(targets), abs=1e-6)
 
 
 def test_every_code_has_a_look_of_its_own() -> None:

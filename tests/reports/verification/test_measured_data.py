@@ -89,9 +89,9 @@ def test_the_gate_counts_nothing_about_them() -> None:
     """Not that they come, go, move, or show more of the model's error."""
     moved = replace(WITH, cells=(*PLAIN.cells, replace(SEEN, value=15.0, difference=-0.25, target=0.5)))
     for before, after in ((PLAIN, WITH), (WITH, PLAIN), (WITH, moved), (moved, WITH)):
-        found = gate.compare(entry(before), entry(after))
-        assert found.passed(strict=True)
-        assert (found.worse, found.gone, found.moved, found.loosened, found.new) == ((),) * 5
+        comparison = gate.compare(entry(before), entry(after))
+        assert comparison.passed(strict=True)
+        assert (comparison.worse, comparison.gone, comparison.moved, comparison.loosened, comparison.new) == ((),) * 5
     assert gate_text.verdict(gate.compare(entry(PLAIN), entry(WITH)), False).endswith(
         "nothing moved; 2 measured, not judged"
     )
@@ -99,9 +99,9 @@ def test_the_gate_counts_nothing_about_them() -> None:
 
 def test_an_answer_that_is_called_a_measurement_is_gone() -> None:
     renamed = replace(PLAIN.cells[0], role="measured", verdict="measured")
-    found = gate.compare(entry(PLAIN), entry(replace(PLAIN, cells=(renamed, PLAIN.cells[1]))))
-    assert [(g.point.code, g.instead) for g in found.gone] == [("alpha", "measured")]
-    assert not found.passed()
+    comparison = gate.compare(entry(PLAIN), entry(replace(PLAIN, cells=(renamed, PLAIN.cells[1]))))
+    assert [(g.point.code, g.instead) for g in comparison.gone] == [("alpha", "measured")]
+    assert not comparison.passed()
 
 
 def test_only_measured_data_are_measured(tmp_path: Path) -> None:

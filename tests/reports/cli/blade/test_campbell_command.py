@@ -100,9 +100,9 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     status, shown, err = southwell(f"{line} -o {out}", capsys)
     assert (status, err) == (0, "")
     blade = library.load(str(beam)).variants[0].blade
-    found = modes(blade, 200 * np.pi / 30, 8, 3)
+    solved = modes(blade, 200 * np.pi / 30, 8, 3)
     row = next(text for text in shown.splitlines() if "flapwise 1" in text and " % flapwise" in text)
-    assert certain(found.frequencies[0] / (2 * np.pi), found.uncertainty[0]) in row.split()
+    assert certain(solved.frequencies[0] / (2 * np.pi), solved.uncertainty[0]) in row.split()
     names = {p.name for p in out.iterdir()}
     assert names == {
         *(f"{stem}.{kind}" for stem in ("campbell", "shapes") for kind in ("svg", "png", "csv")),
@@ -178,10 +178,10 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
     assert "None: no other code was run" in page
     rows = [row.split(",") for row in (out / "campbell.csv").read_text().splitlines()]
     at = rows[0].index("frequency_rad_s")
-    found = [float(row[at]) for row in rows[1:] if row[rows[0].index("omega_rad_s")] == "20.0"]
+    frequencies = [float(row[at]) for row in rows[1:] if row[rows[0].index("omega_rad_s")] == "20.0"]
     (out / "case.toml").write_text(BEAM.replace("hub_radius = 0.1", "hub_radius = 3.0"))
     blade = library.load(str(out / "case.toml")).variants[0].blade
-    np.testing.assert_allclose(found, modes(blade, 20.0, 8, 2).frequencies, rtol=1e-9)
+    np.testing.assert_allclose(frequencies, modes(blade, 20.0, 8, 2).frequencies, rtol=1e-9)
 
 
 @pytest.mark.slow

@@ -74,9 +74,12 @@ def in_house() -> list:
 
 
 def assert_same(
-    found: list, expected: list, within: float = 1e-8, fields: str = "undeformed stiffness inertia body_twist"
+    condensed_segments: list,
+    expected: list,
+    within: float = 1e-8,
+    fields: str = "undeformed stiffness inertia body_twist",
 ) -> None:
-    for a, b in zip(found, expected, strict=True):
+    for a, b in zip(condensed_segments, expected, strict=True):
         for field in fields.split():
             x, y = getattr(a, field), getattr(b, field)
             np.testing.assert_allclose(x, y, rtol=within, atol=within * np.abs(y).max(), err_msg=field)
@@ -85,19 +88,19 @@ def assert_same(
 @pytest.mark.slow
 def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
     """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
-    found = condensing.condense(toml(folder, WHOLE)).blade
-    assert_same(found.segments, in_house(), 1e-7, "undeformed stiffness")
-    assert_same(found.segments, in_house(), 1e-3, "inertia")
+    model = condensing.condense(toml(folder, WHOLE)).blade
+    assert_same(model.segments, in_house(), 1e-7, "undeformed stiffness")
+    assert_same(model.segments, in_house(), 1e-3, "inertia")
     expected = chain_modes(mesh_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
-    np.testing.assert_allclose(condensed.modes(found, SPEED, 5).frequencies, expected, rtol=2e-5)
+    np.testing.assert_allclose(condensed.modes(model, SPEED, 5).frequencies, expected, rtol=2e-5)
 
 
 def test_a_sections_mass_is_shared_by_what_lies_on_either_side(tmp_path: Path) -> None:
     """A prism cut between layers of 0.1 and 0.3 m: each segment has its own length's mass, and its centre in its middle."""
     ends = [0.0, 0.1, 0.4]
     exported(tmp_path, bricks=blade(np.array(ends), 0.2, 0.1, across=(1, 1)))
-    found = condensing.condense(toml(tmp_path, WHOLE.replace(str(STATIONS), str(ends)))).blade
-    masses, centres, _ = zip(*(condensed.body(s) for s in found.segments), strict=True)
+    model = condensing.condense(toml(tmp_path, WHOLE.replace(str(STATIONS), str(ends)))).blade
+    masses, centres, _ = zip(*(condensed.body(s) for s in model.segments), strict=True)
     np.testing.assert_allclose(masses, STEEL.density * 0.02 * np.diff(ends), rtol=1e-10)
     np.testing.assert_allclose([c[0] for c in centres], np.diff(ends) / 2, rtol=1e-10)
 
@@ -116,10 +119,10 @@ def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None
     turned_folder(tmp_path)
     text = WHOLE.replace("[1, 2, 3]", '"freedoms.csv"').replace(str(STATIONS), str([1e3 * x for x in STATIONS]))
     text += f'units = "mm t s"\nspan = "y"\nrotor = "x"\nhub_radius = {ROOT}\n'
-    found = condensing.condense(toml(tmp_path, text)).blade
+    model = condensing.condense(toml(tmp_path, text)).blade
     expected = condensing.condense(toml(folder, WHOLE)).blade
-    assert_same(found.segments, expected.segments, 1e-7)
-    np.testing.assert_allclose(found.root, expected.root, atol=1e-12)
+    assert_same(model.segments, expected.segments, 1e-7)
+    np.testing.assert_allclose(model.root, expected.root, atol=1e-12)
 
 
 @pytest.mark.slow
@@ -128,8 +131,8 @@ def test_a_model_a_segment_is_each_condensed_alone(tmp_path: Path) -> None:
     for k in range(SEGMENTS):
         exported(tmp_path, bricks().part(k * LAYERS // SEGMENTS, (k + 1) * LAYERS // SEGMENTS), f"part{k}")
         text += f'[[segments]]\nstiffness = "part{k}-k.mtx"\nmass = "part{k}-m.mtx"\nnodes = "part{k}-nodes.csv"\n'
-    found = condensing.condense(toml(tmp_path, text)).blade
-    assert_same(found.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
+    model = condensing.condense(toml(tmp_path, text)).blade
+    assert_same(model.segments, solid_blades.segments_apart("average", bricks(), SEGMENTS))
 
 
 def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
@@ -155,8 +158,8 @@ def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
     freedoms = [1, 2, 3, 4, 5, 6]
     body = {{mass = 2.0, centre = [0.45, 0.0, 0.01], moments = [0.02, 0.05, 0.05]}}
     """
-    found = condensing.condense(toml(tmp_path, text)).blade
-    (segment,) = found.segments
+    model = condensing.condense(toml(tmp_path, text)).blade
+    (segment,) = model.segments
     f = np.linalg.inv(segment.stiffness)
     np.testing.assert_allclose(np.diagonal(f)[[0, 3, 4, 5]], length / np.array([EA, GJ, EI, EI]), rtol=1e-9)
     mass, centre, moments = condensed.body(segment)
@@ -167,11 +170,11 @@ def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
-    found = condensing.condense(toml(folder, WHOLE)).blade
-    condensed.write(tmp_path / "segments.json", found)
+    model = condensing.condense(toml(folder, WHOLE)).blade
+    condensed.write(tmp_path / "segments.json", model)
     kept = condensed.read(tmp_path / "segments.json")
-    assert_same(kept.segments, found.segments, 0.0)
-    np.testing.assert_array_equal(kept.root, found.root)
+    assert_same(kept.segments, model.segments, 0.0)
+    np.testing.assert_array_equal(kept.root, model.root)
     (tmp_path / "segments.json").write_text(
         (tmp_path / "segments.json").read_text().replace('"undeformed"', '"deformed"', 1)
     )
@@ -236,8 +239,8 @@ def test_matrices_that_calculix_stored(tmp_path: Path) -> None:
         condensing.condense(toml(tmp_path, text))
     whole = calculix.modes(mesh, STEEL, 0.0, 5, clamped(ROOT)).frequencies
     for weights in ("even", "mass matrix"):
-        found = condensing.condense(toml(tmp_path, f'{text}weights = "{weights}"\n')).blade
-        np.testing.assert_allclose(condensed.modes(found, 0.0, 5).frequencies[:4], whole[:4], rtol=5e-3)
+        model = condensing.condense(toml(tmp_path, f'{text}weights = "{weights}"\n')).blade
+        np.testing.assert_allclose(condensed.modes(model, 0.0, 5).frequencies[:4], whole[:4], rtol=5e-3)
 
 
 # The command
@@ -258,8 +261,8 @@ def test_a_file_by_the_command(folder: Path, tmp_path: Path, capsys: pytest.Capt
     assert status == 0
     page = (tmp_path / "condensation.md").read_text()
     assert page.strip() in out
-    found = condensed.modes(condensing.condense(path).blade, 100.0, 3)
-    whole = list(zip(found.frequencies, found.uncertainty, strict=True))
+    solved = condensed.modes(condensing.condense(path).blade, 100.0, 3)
+    whole = list(zip(solved.frequencies, solved.uncertainty, strict=True))
     rows = [[c.strip() for c in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("|")]
     assert [row[3:5] for row in rows if row[0] == "100"] == [[certain(f, u), relative(u)] for f, u in whole]
     assert sum(float(row[2]) for row in rows if len(row) == 11 and row[0].isdigit()) == pytest.approx(11.1353, rel=1e-4)

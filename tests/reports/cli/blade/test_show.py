@@ -32,10 +32,10 @@ tip_mass = { mass = 2.0 }
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as ending:
         cli.main(["show", *arguments])
     out, err = capsys.readouterr()
-    return int(left.value.code or 0), out, err
+    return int(ending.value.code or 0), out, err
 
 
 @pytest.fixture(autouse=True)
@@ -165,15 +165,15 @@ def test_a_folder_that_cannot_be_written(capsys: pytest.CaptureFixture[str], tmp
 
 def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str]) -> None:
     blade = str(DATA / "bmodes.bmi")
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as ending:
         cli.main(["modes", blade, "--rpm", "10", "--modes", "2", "--elements", "10"])
-    assert not left.value.code
+    assert not ending.value.code
     assert "bmodes: 3 stations, 10 elements" in " ".join(capsys.readouterr().out.split())
     table = str(DATA / "elastodyn_blade.dat")  # the .bmi states a speed
     for command in ("modes", "campbell"):
-        with pytest.raises(SystemExit) as left:
+        with pytest.raises(SystemExit) as ending:
             cli.main([command, table, "--length", "40", "--hub-radius", "1"])
-        assert left.value.code == 2
+        assert ending.value.code == 2
         assert "does not define rotor speeds: give them" in capsys.readouterr().err
 
 

@@ -21,10 +21,10 @@ def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    with pytest.raises(SystemExit) as left:
+    with pytest.raises(SystemExit) as ending:
         cli.main(["study", *arguments])
     out, err = capsys.readouterr()
-    return int(left.value.code or 0), out, err
+    return int(ending.value.code or 0), out, err
 
 
 def test_rows_a_summary_and_nothing_solved_again(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
@@ -49,12 +49,12 @@ def test_parquet_has_the_same_rows_in_groups(capsys: pytest.CaptureFixture[str],
     assert [file.metadata.row_group(k).num_rows for k in range(file.num_row_groups)] == [5, 5, 2]
     assert file.schema_arrow.metadata[b"southwell.study"] == lines(folder / "out.jsonl")[0]
     read = import_module("southwell.cases.study.journal").read
-    for row, found in zip(read(folder / "out.jsonl"), file.read().to_pylist(), strict=True):
-        properties = {name: found.pop(name) for name in ("EI_flap", "mass")}
+    for row, stored in zip(read(folder / "out.jsonl"), file.read().to_pylist(), strict=True):
+        properties = {name: stored.pop(name) for name in ("EI_flap", "mass")}
         assert properties == row.properties
-        assert found == {name: getattr(row, name) for name in found}
-    assert "omega_rad_s" in found
-    assert "rows_left" not in found
+        assert stored == {name: getattr(row, name) for name in stored}
+    assert "omega_rad_s" in stored
+    assert "rows_left" not in stored
 
 
 def test_without_pyarrow_there_is_a_hint_before_the_first_answer(
