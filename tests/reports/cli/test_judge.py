@@ -106,13 +106,13 @@ def test_a_deck_is_listed_beside(tmp_path: Path, capsys: pytest.CaptureFixture[s
     for file in files:  # no cause is sought with aerodynamics, which takes seconds
         Path(file).write_text(Path(file).read_text().replace("; BeamDyn", "; AeroDyn"))
     _, out, _ = southwell(capsys, *files, "--fst", fst)
-    assert "beside core's turbine in vacuo" in out
+    assert "beside Southwell's turbine in vacuo" in out
     _, out, _ = southwell(capsys, *files, "--fst", fst, "--json")
     (point,) = json.loads(out)["operating_points"]
     modes = {pair["mode"]: pair for pair in point["machine"]}
     expected = turbine_modes(machine(read(Path(fst)).turbine), 1.1, 20)
     frequency = expected.frequencies[expected.names.index("1st tower fore-aft")] / (2 * np.pi)
-    assert modes["tower fore-aft 1"]["core_frequency_hz"] == pytest.approx(frequency, rel=1e-4)
+    assert modes["tower fore-aft 1"]["southwell_frequency_hz"] == pytest.approx(frequency, rel=1e-4)
     assert point["remark"].startswith("aerodynamic stiffness is part of the rest")
 
 
