@@ -1,10 +1,13 @@
 """Element stiffness from integrated flexibility, against textbook statics."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.element import sections
+from southwell.core.element.discretize import discretize
 from southwell.core.solve import modes
 from southwell.core.space import spatial as sp
 
@@ -27,6 +30,25 @@ def tip(blade: Blade, wrench: np.ndarray, elements: int = 1) -> np.ndarray:
         lever = sp.adjoint(x[k])
         twist += lever @ seg.flexibility[k] @ lever.T @ spatial
     return np.concatenate([twist[:3] + np.cross(twist[3:], x[-1, :3, 3]), twist[3:]])
+
+
+def test_the_root_is_coned_with_its_hub_radius_and_pitched() -> None:
+    """Precone lifts the blade's axis and the hub radius along it towards +z; pitch turns y towards z, as twist does."""
+    cone, pitch = 0.3, 0.4
+    pose = sections.root(replace(beam(GA), hub_radius=2.0, precone=cone, pitch=pitch))
+    axis, lifted = np.array([np.cos(cone), 0.0, np.sin(cone)]), np.array([-np.sin(cone), 0.0, np.cos(cone)])
+    np.testing.assert_allclose(pose[:3, 3], 2.0 * axis, atol=1e-15)
+    np.testing.assert_allclose(pose[:3, 0], axis, atol=1e-15)
+    np.testing.assert_allclose(pose[:3, 1], np.cos(pitch) * np.array([0, 1, 0]) + np.sin(pitch) * lifted, atol=1e-15)
+
+
+def test_a_tip_mass_is_in_the_axes_of_the_tip_section() -> None:
+    """A plate across the z axis of a section that is twisted and pitched by 0.7 rad."""
+    plate = np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 2.0])
+    mesh = discretize(replace(beam(GA), twist=np.array([0.0, 0.5]), pitch=0.2, tip_mass=plate), 4)
+    axes = mesh.nodes[-1, :3, :3]
+    normal = np.array([0.0, -np.sin(0.7), np.cos(0.7)])
+    np.testing.assert_allclose(axes @ mesh.lumps[-1, 3:, 3:] @ axes.T, np.eye(3) + np.outer(normal, normal), atol=1e-12)
 
 
 @pytest.mark.parametrize("shear", [np.inf, GA], ids=["Euler-Bernoulli", "Timoshenko"])

@@ -84,6 +84,12 @@ def test_twist_and_pitch_rotate_from_y_towards_z(turned):
     np.testing.assert_allclose(soft[1] / soft[2], -np.tan(angle), rtol=1e-6)
 
 
+def test_shapes_of_a_coned_blade_are_in_the_hubs_axes():
+    """Flapping is perpendicular to the blade's axis, which precone lifts towards +z: x/z = −tan of the precone."""
+    shape = TREE.solve(replace(unit(EI_y=1.0, EI_z=25.0), precone=0.3), 0.0, 6, 1).shapes[0, -1].real
+    np.testing.assert_allclose(shape[0] / shape[2], -np.tan(0.3), rtol=1e-6)
+
+
 def test_elements_are_shorter_at_the_root_only_where_a_layer_is_thin():
     """Tension T = m Ω² (R L + L²/2): √(EI/T) = 1/50, so the element at ten of them from the root is twice as long as there."""
     blade, omega = unit(), 50 * np.sqrt(2)

@@ -156,13 +156,17 @@ class TestShapes:
         assert np.abs(flap[:, [0, 1, 3]]).max() < 1e-9 * np.abs(flap[:, 2]).max()
 
     def test_are_in_blade_axes_with_the_right_phase(self) -> None:
-        """The lowest edgewise mode moves along y, its stretch a quarter cycle off (Coriolis); the lowest flapwise along z."""
+        """The lowest edgewise mode moves along y, the lowest flapwise along z.
+
+        Moving along +y it rotates faster and is pulled outwards, a quarter cycle ahead: u = i k v, k > 0 (Coriolis).
+        """
         modes = CODE.solve(yoo_shin(0.0), 10.0, 20, 2)
         edgewise, flapwise = modes.shapes[:, -1] / np.abs(modes.shapes[:, -1]).max(axis=1, keepdims=True)
         assert abs(edgewise[1]) == pytest.approx(1)
         assert abs(flapwise[2]) == pytest.approx(1)
         assert abs(edgewise[0]) > 1e-3
         assert abs((edgewise[0] / edgewise[1]).real) < 1e-9
+        assert (edgewise[0] / edgewise[1]).imag > 1e-3
 
 
 def test_the_same_call_gives_the_same_answer_after_other_calls() -> None:
