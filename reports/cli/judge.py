@@ -49,7 +49,7 @@ def command(
     else:
         console = output()
         for line in (text.verdict(judgement), *text.findings(judgement)):
-            console.print(line, markup=False, soft_wrap=not console.is_terminal)
+            console.print(line, markup=False, soft_wrap=True)
         for part in (*text.modes(judgement, console.width, all), *text.decks(judgement, compared, console.width)):
-            console.print(part, markup=False, soft_wrap=isinstance(part, str) and not console.is_terminal)
+            console.print(part, markup=False, soft_wrap=isinstance(part, str))
     return PASSED if judgement.verdict == YES else FAILED

@@ -25,11 +25,7 @@ def cases() -> int:
     """List the cases that come with the package."""
     rows = []
     loaded, absent = library.everything()
-    for name in library.names():
-        if name in absent:
-            rows.append((name, absent[name], "", ""))
-            continue
-        case = loaded[name]
+    for name, case in loaded.items():
         first, *_ = settings(case)
         blades = ", ".join(v.name.partition("/")[2] for v in case.variants) if len(case.variants) > 1 else "1"
         rows.append((name, case.text.title, blades, first.facts["speeds"]))
@@ -40,6 +36,8 @@ def cases() -> int:
         about = turbine.of_case(library.turbine(name)).setting()
         rows.append((name, about.title, "turbine", about.facts["speeds"]))
     _print(("case", "what", "blades", "speeds"), rows)
+    for name, reason in absent.items():
+        console.output().print(f"○ {name}: {reason}", style="dim", markup=False, soft_wrap=True)
     return PASSED
 
 

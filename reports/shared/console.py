@@ -3,7 +3,7 @@
 import time
 from datetime import timedelta
 from types import TracebackType
-from typing import Self
+from typing import Any, Self
 
 from rich.console import Console
 from rich.progress import (
@@ -26,10 +26,21 @@ SILENCE = 10.0
 """Shortest time between two lines of progress in a log, seconds."""
 
 
+class _Output(Console):
+    """A console that wraps long lines between words if it is a terminal, which would break them anywhere."""
+
+    def print(self, *objects: Any, soft_wrap: bool | None = None, **options: Any) -> None:
+        """As ``Console.print``; with ``soft_wrap``, words longer than a line, such as paths, are not broken."""
+        if soft_wrap and self.is_terminal:
+            super().print(*objects, overflow="ignore", crop=False, **options)
+        else:
+            super().print(*objects, soft_wrap=soft_wrap, **options)
+
+
 def output() -> Console:
     """The console for tables on standard output; ``WIDE`` characters wide unless it is a terminal."""
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=WIDE)
+    console = _Output(highlight=False)
+    return console if console.is_terminal else _Output(highlight=False, width=WIDE)
 
 
 class _Display:

@@ -12,7 +12,7 @@ from rich import box
 from rich.markup import escape
 from rich.table import Table
 
-NUMBER = re.compile(r"(far|none|at rest|\de[+-]?\d|[^A-Za-z])*( ?(rad/s|rpm|Hz|m|kg))?|[a-z]+ \d+")
+NUMBER = re.compile(r"(far|none|at rest|\de[+-]?\d|[^A-Za-z,])*( ?(rad/s|rpm|Hz|m|kg))?|[a-z]+ \d+")
 """Text that stays on one line: numbers with exponents and units, and names of modes such as ``flapwise 2``."""
 
 LONG = 20

@@ -1,11 +1,13 @@
 """Tables in the terminal: no number and no word is broken, whatever the width."""
 
 import re
+from io import StringIO
 
 import pytest
 from rich.console import Console
 
 from southwell.reports.campbell.tables import Sheet, terminal
+from southwell.reports.shared.console import _Output
 
 HEAD = ("mode", "kinetic energy", "Hz at rest", "Hz at 15 rpm", "± relative", "change", "residual")
 ROWS = tuple(
@@ -26,3 +28,15 @@ def test_every_field_is_whole_and_lines_fit(width: int) -> None:
         assert {word for field in row for word in field.split()} <= words
     numbers = [field for row in ROWS for field in row[2:]]
     assert all(any(field in line for line in lines) for field in numbers)
+
+
+def test_a_long_line_in_a_terminal_breaks_between_words_and_leaves_paths_whole() -> None:
+    out = StringIO()
+    path = "/a/folder/whose/name/is/longer/than/the/line/campbell.md"
+    _Output(file=out, width=40, force_terminal=True, color_system=None).print(
+        f"{'frequency 0.6777006 Hz; ' * 5}{path}", soft_wrap=True
+    )
+    lines = out.getvalue().splitlines()
+    assert path in lines
+    assert all(len(line) <= 40 for line in lines if line != path)
+    assert out.getvalue().count("0.6777006") == 5
