@@ -1,6 +1,6 @@
-"""Straight rotating beams in bending, by cubic finite elements: somebody's own solver, which knows nothing of Southwell.
+"""Straight rotating beams in bending, by cubic finite elements: a user's own solver, which does not import Southwell.
 
-A beam is four arrays at equally spaced points from root to tip; the rotor's axis is ``hub`` from its root.
+A beam has three arrays at equally spaced points from root to tip; its root is the distance ``hub`` from the rotor axis.
 """
 
 from dataclasses import dataclass
@@ -26,7 +26,7 @@ class Beam:
 def frequencies(beam, omega, elements, count, stiffened=True):
     """The lowest frequencies, rad/s; the plane of each (0: of rotation, 1: out of it); deflections at 21 points.
 
-    ``stiffened`` False leaves out what the centrifugal force does to the stiffness: a mistake, for the tests.
+    ``stiffened=False`` omits the stiffness due to the centrifugal force, a mistake that the tests must detect.
     """
     found = []
     for plane, bending in enumerate((beam.in_plane, beam.out_of_plane)):
@@ -40,7 +40,7 @@ def frequencies(beam, omega, elements, count, stiffened=True):
 
 
 def _matrices(beam, omega, elements, bending, stiffened):
-    """Mass and stiffness, the root's deflection and slope held."""
+    """Mass and stiffness of the beam with a clamped root."""
     h = beam.length / elements
     table = np.linspace(0, beam.length, len(beam.mass))
     M, K = np.zeros((2, 2 * elements + 2, 2 * elements + 2))
@@ -58,7 +58,7 @@ def _matrices(beam, omega, elements, bending, stiffened):
 
 
 def _tension(beam, table, omega, s):
-    """What holds the mass outboard of s on its circle; that mass is linear between the table's points."""
+    """Centrifugal force of the mass outboard of s; mass per length is linear between the points of the table."""
     ends = np.concatenate([[s], table[table > s]])
     half = np.diff(ends)[:, None] / 2
     x = (ends[:-1, None] + half) + half * (2 * POINTS - 1)

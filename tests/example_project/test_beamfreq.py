@@ -1,11 +1,10 @@
-"""The matrix as tests of this project's solver: a function that hands it a blade, and a mark."""
+"""Run the verification matrix on this project's solver: a function that calls it with a blade, and a mark."""
 
 import numpy as np
 import pytest
 from beamfreq import Beam, frequencies
 
-from southwell.core.blade import Blade, clamped, coupled, straight
-from southwell.references.sampling import sample
+from southwell.adapter import Blade, clamped, coupled, sample, straight
 
 
 def solve(blade: Blade, omega: float, elements: int, count: int, **options):
@@ -20,7 +19,7 @@ def solve(blade: Blade, omega: float, elements: int, count: int, **options):
 
 
 def unsupported(blade: Blade) -> str | None:
-    """Why the solver cannot have a blade."""
+    """Return why the solver cannot represent a blade, or None."""
     if coupled(blade) or not straight(blade) or not clamped(blade):
         return "these are straight, uncoupled, clamped beams"
     if blade.twist.any() or blade.precone or blade.pitch or blade.tip_mass.any():

@@ -1,11 +1,11 @@
-"""A solver that is wrong on purpose: without what the centrifugal force does to the stiffness. Its tests must fail."""
+"""A solver that is wrong on purpose: it omits the stiffness due to the centrifugal force. Its tests must fail."""
 
 import pytest
 from test_beamfreq import SOLVER, solve
 
 
 def unstiffened(blade, omega, elements, count):
-    """The same, with the mistake."""
+    """Call the solver with the mistake."""
     return solve(blade, omega, elements, count, stiffened=False)
 
 
