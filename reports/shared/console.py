@@ -2,6 +2,7 @@
 
 import time
 from datetime import timedelta
+from textwrap import fill
 from types import TracebackType
 from typing import Any, Self
 
@@ -30,11 +31,17 @@ class _Output(Console):
     """A console that wraps long lines between words if it is a terminal, which would break them anywhere."""
 
     def print(self, *objects: Any, soft_wrap: bool | None = None, **options: Any) -> None:
-        """As ``Console.print``; with ``soft_wrap``, words longer than a line, such as paths, are not broken."""
+        """As ``Console.print``; with ``soft_wrap``, text is wrapped, and words longer than a line, such as paths, are whole."""
         if soft_wrap and self.is_terminal:
-            super().print(*objects, overflow="ignore", crop=False, **options)
-        else:
-            super().print(*objects, soft_wrap=soft_wrap, **options)
+            objects = tuple(_wrapped(text, self.width) if isinstance(text, str) else text for text in objects)
+        super().print(*objects, soft_wrap=soft_wrap, **options)
+
+
+def _wrapped(text: str, width: int) -> str:
+    return "\n".join(
+        fill(line, width, break_long_words=False, break_on_hyphens=False) if len(line) > width else line
+        for line in text.split("\n")
+    )
 
 
 def output() -> Console:
