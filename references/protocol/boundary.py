@@ -14,20 +14,15 @@ from msgspec import Meta, Struct
 from numpy.typing import NDArray
 
 from ...core.modes import STATIONS, Modes
-from .fingerprint import Fingerprint
-from .interface import DIGITS, MOTIONS, MechanismModes, Motion
+from .fingerprint import Elements, Fingerprint
+from .interface import MechanismModes, TextLine
 from .process import Failure, one_line
 from .turbines import TurbineModes
 from .wire import decode_complex, decode_modes
 
 T = TypeVar("T")
 
-PRINTABLE = r"^[^\x00-\x1f\x7f\ud800-\udfff]*$"
-
-TextLine = Annotated[str, Meta(max_length=300, pattern=PRINTABLE)]
-Name = Annotated[str, Meta(max_length=60, pattern=r"^[^\W_][\w.+-]*$")]
 Seconds = Annotated[float, Meta(ge=0, le=1e9)]
-Elements = Annotated[int, Meta(ge=1, le=10**7)]
 
 LARGEST = 1e100
 """Largest magnitude of any number in an answer; its square is finite."""
@@ -47,47 +42,6 @@ class Failed(Struct, frozen=True, forbid_unknown_fields=True):
     reason: str
 
 
-class Effects(Struct, frozen=True, forbid_unknown_fields=True):
-    """Same fields as ``core.effects.Effects``."""
-
-    prestretch: bool
-    coriolis: bool
-    rotary_inertia: bool
-    geometric: bool
-
-
-class Origin(Struct, frozen=True, forbid_unknown_fields=True):
-    """Same fields as ``interface.Independence``."""
-
-    engine: TextLine
-    theory: TextLine
-    rotation: TextLine
-    sections: TextLine
-    eigensolver: TextLine
-
-
-class Declared(Struct, frozen=True, forbid_unknown_fields=True):
-    """Declarations of an adapter; see ``interface``. A code that solves only mechanisms has the defaults of the others."""
-
-    name: Name
-    title: TextLine
-    effects: Effects
-    hint: TextLine
-    blades: bool
-    mechanisms: bool
-    turbines: bool
-    independence: Origin | None
-    distribution: TextLine
-    version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None
-    page: str
-    levels: Annotated[tuple[Elements, ...], Meta(max_length=20)] = ()
-    order: Annotated[int, Meta(ge=0, le=100)] = 0
-    finest: Elements | None = None
-    motions: Annotated[tuple[Motion, ...], Meta(min_length=1, max_length=4)] = MOTIONS
-    digits: Annotated[int, Meta(ge=1, le=17)] = DIGITS
-    bracket: bool = False
-
-
 class _Complex(Struct, frozen=True, forbid_unknown_fields=True):
     sizes: list[Annotated[int, Meta(ge=0, le=10**7)]]
     base64: str
@@ -103,15 +57,6 @@ class _Modes(Struct, frozen=True, forbid_unknown_fields=True):
     rounding: list[float]
     strain: float
     seconds: Seconds
-
-
-class _Fingerprint(Struct, frozen=True, forbid_unknown_fields=True):
-    mass: Annotated[float, Meta(ge=0)]
-    first_moments: tuple[float, float, float]
-    rotor_inertia: float
-    elements: Elements
-    start: Annotated[float, Meta(ge=0)]
-    flexibility: Annotated[tuple[float, ...], Meta(min_length=21, max_length=21)] | None = None
 
 
 class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
@@ -224,23 +169,6 @@ def turbine_modes(data: Any, count: int, stations: int) -> TurbineModes:
     return TurbineModes(values, shapes, answer.elements, answer.seconds)
 
 
-def declared(data: Any) -> Declared:
-    """Validate the declarations of a code.
-
-    Raises:
-        NonsenseError: if the data are invalid.
-    """
-    declarations = convert(data, Declared)
-    _keep(
-        declarations.blades or declarations.mechanisms or declarations.turbines,
-        "the code solves no blades, mechanisms or turbines",
-    )
-    if declarations.blades or declarations.turbines:
-        _keep(len(declarations.levels) > 0, "levels: (): give at least one refinement")
-        _keep(np.all(np.diff(declarations.levels) > 0), f"levels: {declarations.levels}: not ascending")
-    return declarations
-
-
 def fingerprint(data: Any) -> Fingerprint | None:
     """Validate the fingerprint of a model; None if the code reports none.
 
@@ -249,11 +177,11 @@ def fingerprint(data: Any) -> Fingerprint | None:
     """
     if data is None:
         return None
-    answer = convert(data, _Fingerprint)
+    answer = convert(data, Fingerprint)
     for name in ("mass", "first_moments", "rotor_inertia", "start"):
         _finite(name, getattr(answer, name))
     _finite("flexibility", answer.flexibility or ())
-    return Fingerprint(**msgspec.structs.asdict(answer))
+    return answer
 
 
 def convert(data: Any, kind: type[T]) -> T:

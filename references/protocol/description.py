@@ -11,15 +11,28 @@ import sys
 from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
-from typing import Any
+from typing import Annotated, Any
 
 import numpy as np
+from msgspec import Meta
 
 from ...core.blade import Blade
 from ...core.effects import ALL_EFFECTS, Effects
 from . import boundary, registry
 from .boundary import NonsenseError
-from .interface import DIGITS, MOTIONS, BladeAdapter, Independence, MechanismAdapter, Motion, SharedWithCore, shares
+from .fingerprint import Elements
+from .interface import (
+    DIGITS,
+    MOTIONS,
+    PRINTABLE,
+    BladeAdapter,
+    Independence,
+    MechanismAdapter,
+    Motion,
+    SharedWithCore,
+    TextLine,
+    shares,
+)
 from .process import Failure, Limits, converse, one_line, raised
 from .registry import UnknownCodeError
 from .turbines import TurbineAdapter
@@ -30,6 +43,11 @@ TOGETHER = 2
 
 ASKING = Limits(seconds=120.0)
 """Default limits for describing one code; most of the time is its import."""
+
+
+NAME = r"[^\W_][\w.+-]*"
+
+LONGEST_NAME = 60
 
 
 @dataclass(frozen=True)
@@ -49,22 +67,22 @@ class Description:
     """
 
     asked: str
-    name: str
-    title: str = ""
+    name: Annotated[str, Meta(max_length=LONGEST_NAME, pattern=f"^{NAME}$")]
+    title: TextLine = ""
     effects: Effects = ALL_EFFECTS
-    hint: str = ""
-    levels: tuple[int, ...] = ()
-    order: int = 0
-    finest: int | None = None
-    motions: tuple[Motion, ...] = MOTIONS
-    digits: int = DIGITS
+    hint: TextLine = ""
+    levels: Annotated[tuple[Elements, ...], Meta(max_length=20)] = ()
+    order: Annotated[int, Meta(ge=0, le=100)] = 0
+    finest: Elements | None = None
+    motions: Annotated[tuple[Motion, ...], Meta(min_length=1, max_length=4)] = MOTIONS
+    digits: Annotated[int, Meta(ge=1, le=17)] = DIGITS
     bracket: bool = False
     independence: Independence | None = None
-    distribution: str = ""
+    distribution: TextLine = ""
     blades: bool = True
     mechanisms: bool = True
     turbines: bool = False
-    version: str | None = None
+    version: Annotated[str, Meta(min_length=1, max_length=100, pattern=PRINTABLE)] | None = None
     refused: tuple[str | None, ...] = ()
     page: str = ""
     failure: Failure | None = None
@@ -119,40 +137,31 @@ def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits:
 
 def _failed(asked: str, failure: Failure, name: Any = None) -> Description:
     """A description with a failure only; ``name`` is used if it is valid, ``asked`` otherwise."""
-    proper = isinstance(name, str) and re.fullmatch(r"[^\W_][\w.+-]{0,59}", name)
+    proper = isinstance(name, str) and len(name) <= LONGEST_NAME and re.fullmatch(NAME, name)
     return Description(asked, name if proper else one_line(asked), failure=failure)
 
 
 def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
-    name = data.get("name")
-    refused, error_text = data.pop("refused", []), data.pop("raised", "")
+    """The description in a reply; one with a failure if the declarations are invalid."""
+    error = data.pop("raised", "")
     try:
         if failure := boundary.failure(data):
             return _failed(asked, failure)
-        declarations = boundary.declared(data)
-        refused = boundary.convert(refused, list[str | None])
-        if len(refused) not in (0, blades):
-            raise NonsenseError(f"unsupported(): {len(refused)} answers for {blades} blades")
-    except NonsenseError as error:
-        return _failed(asked, Failure("nonsense", one_line(error)), name)
-    facts = {field: getattr(declarations, field) for field in declarations.__struct_fields__}
-    facts["name"] = declarations.name
-    origin = (
-        Independence(**{f: getattr(declarations.independence, f) for f in declarations.independence.__struct_fields__})
-        if (declarations.independence)
-        else None
-    )
-    effects = Effects(**{f: getattr(declarations.effects, f) for f in declarations.effects.__struct_fields__})
-    description = Description(
-        asked,
-        **{
-            **facts,
-            "independence": origin,
-            "effects": effects,
-            "refused": tuple(why and one_line(why) for why in refused),
-        },
-    )
-    return replace(description, failure=Failure("nonsense", one_line(error_text))) if error_text else description
+        said = boundary.convert({**data, "asked": asked, "failure": None}, Description)
+        _require(said.blades or said.mechanisms or said.turbines, "the code solves no blades, mechanisms or turbines")
+        if said.blades or said.turbines:
+            _require(len(said.levels) > 0, "levels: (): give at least one refinement")
+            _require(bool(np.all(np.diff(said.levels) > 0)), f"levels: {said.levels}: not ascending")
+        _require(len(said.refused) in (0, blades), f"unsupported(): {len(said.refused)} answers for {blades} blades")
+    except NonsenseError as invalid:
+        return _failed(asked, Failure("nonsense", one_line(invalid)), data.get("name"))
+    failure = Failure("nonsense", one_line(error)) if error else None
+    return replace(said, refused=tuple(why and one_line(why) for why in said.refused), failure=failure)
+
+
+def _require(true: bool, message: str) -> None:
+    if not true:
+        raise NonsenseError(message)
 
 
 BLADE_DECLARATIONS = ("levels", "order", "finest", "motions", "digits", "bracket")

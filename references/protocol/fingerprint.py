@@ -5,11 +5,14 @@ blade's azimuth, z the rotor's axis.
 """
 
 from dataclasses import dataclass
+from typing import Annotated
 
 import numpy as np
+from msgspec import Meta
 from numpy.typing import ArrayLike, NDArray
 
 Array = NDArray[np.float64]
+Elements = Annotated[int, Meta(ge=1, le=10**7)]
 
 SPIN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 0.0]])
 """The vector product e_z ×."""
@@ -30,12 +33,12 @@ class Fingerprint:
             report it.
     """
 
-    mass: float
+    mass: Annotated[float, Meta(ge=0)]
     first_moments: tuple[float, float, float]
     rotor_inertia: float
-    elements: int
-    start: float = 0.0
-    flexibility: tuple[float, ...] | None = None
+    elements: Elements
+    start: Annotated[float, Meta(ge=0)] = 0.0
+    flexibility: Annotated[tuple[float, ...], Meta(min_length=21, max_length=21)] | None = None
 
 
 UPPER = np.triu_indices(6)

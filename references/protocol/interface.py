@@ -13,9 +13,10 @@ from abc import ABC, abstractmethod
 from collections.abc import Mapping
 from dataclasses import dataclass
 from importlib import metadata
-from typing import TYPE_CHECKING, Literal, get_args
+from typing import TYPE_CHECKING, Annotated, Literal, get_args
 
 import numpy as np
+from msgspec import Meta
 from numpy.typing import NDArray
 
 from ...core.blade import Blade
@@ -27,6 +28,11 @@ if TYPE_CHECKING:
     from ...core.mechanism.description import Mechanism
 
 Complex = NDArray[np.complex128]
+
+PRINTABLE = r"^[^\x00-\x1f\x7f\ud800-\udfff]*$"
+
+TextLine = Annotated[str, Meta(max_length=300, pattern=PRINTABLE)]
+"""What a code declares in words: one printable line."""
 
 SharedWithCore = Literal["nothing", "mechanical model", "discretisation", "undeclared"]
 
@@ -70,11 +76,11 @@ class Independence:
         eigensolver: what solves the eigenproblem.
     """
 
-    engine: str
-    theory: str
-    rotation: str
-    sections: str = "blade"
-    eigensolver: str = "the adapters' own"
+    engine: TextLine
+    theory: TextLine
+    rotation: TextLine
+    sections: TextLine = "blade"
+    eigensolver: TextLine = "the adapters' own"
 
 
 def extra(name: str) -> str:

@@ -13,10 +13,9 @@ limit, finished answers are kept.
 """
 
 import json
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import asdict, replace
-from functools import partial
 from math import nan
 from typing import TYPE_CHECKING, Any, TypeVar
 
@@ -78,14 +77,11 @@ def answers(
     """
     fixed = {**registry.address(name), "blade": encode(blade), **({"deck": asdict(deck)} if deck else {})}
 
-    def request(numbers: Sequence[int]) -> bytes:
-        return json.dumps({**fixed, "runs": [list(runs[k]) for k in numbers]}).encode()
-
     def modes(number: int, data: Any) -> Modes:
         omega, _, count = runs[number]
         return boundary.modes(data, omega, count)
 
-    return _exchange(request, len(runs), limits, modes, name, version)
+    return _exchange(fixed, "runs", runs, limits, modes, name, version)
 
 
 def fingerprints(
@@ -97,11 +93,15 @@ def fingerprints(
     """
     fixed = {**registry.address(name), "blade": encode(blade)}
 
-    def request(numbers: Sequence[int]) -> bytes:
-        return json.dumps({**fixed, "fingerprints": [elements[k] for k in numbers]}).encode()
-
     return _exchange(
-        request, len(elements), limits, lambda _, data: boundary.fingerprint(data), name, version, "fingerprint"
+        fixed,
+        "fingerprints",
+        elements,
+        limits,
+        lambda _, data: boundary.fingerprint(data),
+        name,
+        version,
+        "fingerprint",
     )
 
 
@@ -114,10 +114,10 @@ def mechanism_answers(
     """
     fixed = {**registry.address(name), "guess": dict(guess)}
 
-    def request(numbers: Sequence[int]) -> bytes:
-        return json.dumps({**fixed, "mechanisms": [encode_mechanism(mechanisms[k]) for k in numbers]}).encode()
-
-    return _exchange(request, len(mechanisms), limits, lambda _, data: boundary.mechanism_modes(data), name, version)
+    encoded = [encode_mechanism(mechanism) for mechanism in mechanisms]
+    return _exchange(
+        fixed, "mechanisms", encoded, limits, lambda _, data: boundary.mechanism_modes(data), name, version
+    )
 
 
 def turbine_answers(
@@ -130,45 +130,48 @@ def turbine_answers(
     fixed = {**registry.address(name), "turbine": encode_turbine(turbine)}
     stations = len(STATIONS) * (1 + turbine.blades)
 
-    def request(numbers: Sequence[int]) -> bytes:
-        return json.dumps({**fixed, "runs": [list(runs[k]) for k in numbers]}).encode()
-
     def modes(number: int, data: Any) -> TurbineModes:
         return boundary.turbine_modes(data, runs[number][2], stations)
 
-    return _exchange(request, len(runs), limits, modes, name, version)
+    return _exchange(fixed, "runs", runs, limits, modes, name, version)
 
 
 def _exchange(
-    request: Callable[[Sequence[int]], bytes],
-    count: int,
+    fixed: Mapping[str, Any],
+    key: str,
+    questions: Sequence[Any],
     limits: Limits,
     made: Callable[[int, Any], T],
     code: str,
     version: str,
     field: str = "modes",
 ) -> list[T | Failure]:
-    """The answers to ``count`` questions, each validated by ``made(number, data)``, or failures in their place.
+    """The answers to questions, each validated by ``made(number, data)``, or failures in their place.
 
     Answers that are in the user's store are taken from it; the process of the code is asked for the others. Answers of codes
     that are not part of this package or of unknown version are not stored, as no digest covers them; nor are failures.
 
     Args:
-        request: the request with the questions of these numbers.
-        count: number of questions.
+        fixed: what requests have in common.
+        key: of the questions in a request.
+        questions: plain data.
         limits: for each of them.
         made: validates an answer.
         code: name or import path of the code.
         version: its version; empty if unknown.
         field: key of the answer in a reply.
     """
+
+    def request(numbers: Sequence[int]) -> bytes:
+        return json.dumps({**fixed, key: [questions[k] for k in numbers]}).encode()
+
     kept = store.opened() if limits.reuse and version and sources.bundled(code) else None
-    keys = [store.key(request([k]), code, version) for k in range(count)] if kept else []
+    keys = [store.key(request([k]), code, version) for k in range(len(questions))] if kept else []
     out: dict[int, T | Failure] = {}
-    for k, key in enumerate(keys):
-        if kept and (answer := _stored(kept, key, made, k, field)):
+    for k, digest in enumerate(keys):
+        if kept and (answer := _stored(kept, digest, made, k, field)):
             out[k] = answer
-    asked = [k for k in range(count) if k not in out]
+    asked = [k for k in range(len(questions)) if k not in out]
     lines, ended = converse(__name__, request(asked), len(asked), limits) if asked else ([], NOTHING)
     for place, (k, line) in enumerate(zip(asked, lines, strict=False)):
         try:
@@ -180,7 +183,7 @@ def _exchange(
         if kept and not isinstance(answer, Failure):
             with suppress(OSError):  # a full disk, or a damaged file
                 kept.put(keys[k], f"{code}, answers", line)
-    return [out.get(k, ended) for k in range(count)]
+    return [out.get(k, ended) for k in range(len(questions))]
 
 
 NOTHING = Failure("internal", "no question was asked")
@@ -223,81 +226,58 @@ def _declined(code: Any, asked: str, question: object) -> Reply | None:
         return foreign_exception(error, "version()")
 
 
-def _solved(method: str, expected: type, solve: Callable[[], Any]) -> Reply:
-    """The modes that ``solve`` returns, or a failure; whatever a code raises affects this question only."""
+def _solved(expected: type, solve: Callable[..., Any], *question: Any) -> Reply:
+    """The answer of a method of a code, or a failure; whatever it raises affects this question only."""
     try:
-        modes = solve()
-        if not isinstance(modes, expected):
-            return failed("nonsense", f"{method}(): {type(modes).__name__}, not {expected.__name__}")
-        return {"modes": encode(modes)}
+        answer = solve(*question)
+        if expected is Fingerprint:
+            if answer is None or isinstance(answer, Fingerprint):
+                return {"fingerprint": answer and encode(answer)}
+        elif isinstance(answer, expected):
+            return {"modes": encode(answer)}
+        return failed("nonsense", f"{METHODS[expected]}(): {type(answer).__name__}, not {expected.__name__}")
     except CodeError as error:
         return failed("refused", one_line(error))
     except BaseException as error:
         return foreign_exception(error)
 
 
+METHODS: dict[type, str] = {
+    Modes: "modes",
+    Fingerprint: "fingerprint",
+    TurbineModes: "turbine_modes",
+    MechanismModes: "mechanism_modes",
+}
+"""The method of an adapter that returns each type."""
+
+
 def _answer(request: Any) -> Iterator[Reply]:
+    asked = request.get("runs") or request.get("fingerprints") or request["mechanisms"]
     code = registry.loaded(request)
+    if not isinstance(code, Failure) and request.get("deck"):
+        try:
+            code = code.given(Deck(**request["deck"]))
+        except BaseException as error:
+            code = Failure("nonsense", foreign_exception(error, "given()")["reason"])
     if isinstance(code, Failure):
-        asked = request.get("runs") or request.get("fingerprints") or request["mechanisms"]
         yield from [failed(code.kind, code.reason)] * len(asked)
-    elif "fingerprints" in request:
-        yield from _fingerprint_replies(code, decode_blade(request["blade"]), request["fingerprints"])
-    elif "blade" in request:
-        yield from _blade_replies(code, decode_blade(request["blade"]), request["runs"], request.get("deck"))
+    elif "mechanisms" in request:
+        for mechanism in map(decode_mechanism, asked):
+            refusal = _declined(code, "unsupported_mechanism", mechanism)
+            yield refusal or _solved(MechanismModes, code.solve_mechanism, mechanism, request["guess"])
     elif "turbine" in request:
-        yield from _turbine_replies(code, decode_turbine(request["turbine"]), request["runs"])
+        turbine = decode_turbine(request["turbine"])
+        refusal = _declined(code, "unsupported_turbine", turbine)
+        for run in asked:
+            yield refusal or _solved(TurbineModes, code.solve_turbine, turbine, *run)
     else:
-        yield from _mechanism_replies(code, map(decode_mechanism, request["mechanisms"]), request["guess"])
-
-
-def _blade_replies(code: Any, blade: Blade, runs: Sequence[Run], deck: Mapping[str, Any] | None) -> Iterator[Reply]:
-    if deck:
-        try:
-            code = code.given(Deck(**deck))
-        except BaseException as error:
-            yield from [foreign_exception(error, "given()")] * len(runs)
-            return
-    if refusal := _declined(code, "unsupported", blade):
-        yield from [refusal] * len(runs)
-        return
-    for omega, elements, count in runs:
-        yield _solved("modes", Modes, partial(code.solve, blade, omega, elements, count))
-
-
-def _turbine_replies(code: Any, turbine: "Turbine", runs: Sequence[Run]) -> Iterator[Reply]:
-    if refusal := _declined(code, "unsupported_turbine", turbine):
-        yield from [refusal] * len(runs)
-        return
-    for omega, elements, count in runs:
-        yield _solved("turbine_modes", TurbineModes, partial(code.solve_turbine, turbine, omega, elements, count))
-
-
-def _fingerprint_replies(code: Any, blade: Blade, elements: Sequence[int]) -> Iterator[Reply]:
-    if refusal := _declined(code, "unsupported", blade):
-        yield from [refusal] * len(elements)
-        return
-    for number in elements:
-        try:
-            answer = code.fingerprint(blade, number)
-        except CodeError as error:
-            yield failed("refused", one_line(error))
-        except BaseException as error:
-            yield foreign_exception(error)
-        else:
-            wrong = answer is not None and not isinstance(answer, Fingerprint)
-            yield (
-                failed("nonsense", f"fingerprint(): {type(answer).__name__}, not Fingerprint")
-                if wrong
-                else {"fingerprint": answer and encode(answer)}
-            )
-
-
-def _mechanism_replies(code: Any, mechanisms: Iterable[Mechanism], guess: Mapping[str, float]) -> Iterator[Reply]:
-    for mechanism in mechanisms:
-        yield _declined(code, "unsupported_mechanism", mechanism) or _solved(
-            "mechanism_modes", MechanismModes, partial(code.solve_mechanism, mechanism, guess)
-        )
+        blade = decode_blade(request["blade"])
+        refusal = _declined(code, "unsupported", blade)
+        for question in asked:
+            if "fingerprints" in request:
+                yield refusal or _solved(Fingerprint, code.fingerprint, blade, question)
+            else:
+                yield refusal or _solved(Modes, code.solve, blade, *question)
 
 
 def main() -> None:
