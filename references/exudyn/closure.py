@@ -87,8 +87,8 @@ class System:
 def system(tree: Tree) -> System:
     """Build a mechanism in Exudyn, with its motions at their rates."""
     exu, container, mbs = ex.system()
-    item, rotations = _plant(exu, mbs, tree, velocity(tree))
-    _close(exu, mbs, tree, item, rotations)
+    item, rotations = _add_tree(exu, mbs, tree, velocity(tree))
+    _add_joints_and_springs(exu, mbs, tree, item, rotations)
     mbs.Assemble()
     return System(exu, container, mbs, own_coordinates(tree))
 
@@ -107,7 +107,7 @@ def own_coordinates(tree: Tree) -> int:
     return sum(name.rpartition(".")[0] not in cut for name in tree.coordinates)
 
 
-def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[Array]]:
+def _add_tree(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[Array]]:
     """The tree, one link per coordinate with the inertia of the bodies on it, and the rotations of the links.
 
     Exudyn's joints are along positive axes; the rotation of a link aligns one of them with its screw.
@@ -164,7 +164,7 @@ def _plant(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, list[A
     return item, rotations
 
 
-def _close(exu: Any, mbs: Any, tree: Tree, item: Any, rotations: list[Array]) -> None:
+def _add_joints_and_springs(exu: Any, mbs: Any, tree: Tree, item: Any, rotations: list[Array]) -> None:
     """Add loop joints, and springs between points."""
     items, mechanism = exu.itemInterface, tree.mechanism
     ground = mbs.AddObject(items.ObjectGround())

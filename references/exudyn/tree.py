@@ -188,9 +188,9 @@ def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
     turns = np.isin(tree.strain, TURN)[:, None]
     out = np.zeros((len(tree.segment), 6, n))
     for row, k in zip(out, tree.segment, strict=True):
-        inner = slice(0, k + 1)
-        swept = np.where(turns[inner], np.cross(axis[inner], where[k] - origin[inner]), axis[inner])
-        row[:3, inner], row[3:, inner] = swept.T, np.where(turns[inner], axis[inner], 0.0).T
+        moving = slice(0, k + 1)
+        swept = np.where(turns[moving], np.cross(axis[moving], where[k] - origin[moving]), axis[moving])
+        row[:3, moving], row[3:, moving] = swept.T, np.where(turns[moving], axis[moving], 0.0).T
     return out
 
 

@@ -38,14 +38,14 @@ def solve(request):
     EA, EI_y, EI_z, GJ, mass, twist = (
         np.array(request[name]) for name in ("EA", "EI_y", "EI_z", "GJ", "mass", "twist")
     )
-    number, zero, ones = np.arange(1, len(x) + 1), np.zeros(len(x)), np.ones(len(EA))
+    number, zero, unit = np.arange(1, len(x) + 1), np.zeros(len(x)), np.ones(len(EA))
     rotating = force.any()
-    clamped, springs = zero.copy(), spring.copy()
-    clamped[0] = springs[0] = FIXED
+    supports, springs = zero.copy(), spring.copy()
+    supports[0] = springs[0] = FIXED
     every = slice(None) if rotating else slice(1)
-    reactions = [column[every] for column in (number, clamped, clamped, springs, clamped, clamped, clamped)]
+    reactions = [column[every] for column in (number, supports, supports, springs, supports, supports, supports)]
     # a section of one square metre
-    section = (ones, ones, ones, GJ / EA, EI_y / EA, EI_z / EA, EA, EA, np.degrees(twist), mass)
+    section = (unit, unit, unit, GJ / EA, EI_y / EA, EI_z / EA, EA, EA, np.degrees(twist), mass)
     elements = (number[:-1], number[:-1], number[1:], *section)
     frame = f3.Frame(
         f3.NodeData(number, x, zero, zero, zero),

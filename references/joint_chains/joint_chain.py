@@ -77,8 +77,8 @@ def refusal(blade: Blade) -> str | None:
     if not clamped(blade):
         return "the root is not clamped: the chain is clamped to the hub"
     for name, inertia in (("mass", blade.mass), ("tip_mass", blade.tip_mass[None])):
-        if (far := _from_rigid(inertia)) > RIGID:
-            return f"{name} is not a rigid body's to {far:.1e}: one mass in all directions, antisymmetric offset"
+        if (deviation := _from_rigid(inertia)) > RIGID:
+            return f"{name} is not a rigid body's to {deviation:.1e}: one mass in all directions, antisymmetric offset"
     return None
 
 

@@ -126,16 +126,16 @@ def _pose(pose: Array, length: float) -> Array:
 
 
 def _beam(beam: Beam, units: Units) -> Beam:
-    u, inner, energy, beams = units.twist, np.sqrt(units.energy), units.energy, beam.beams
+    u, internal, energy, beams = units.twist, np.sqrt(units.energy), units.energy, beam.beams
     pair, ratio = u[:, None] * u, u / u[:, None]
     law, points = beams.law, beams.points
     # internal coordinates have a stiffness of 1, hence the unit √energy
-    slope = law.slope * np.concatenate([ratio, np.repeat(inner / u[:, None], 6, axis=1)], axis=1)
+    slope = law.slope * np.concatenate([ratio, np.repeat(internal / u[:, None], 6, axis=1)], axis=1)
     rescaled: Any = replace(
         points,
         zeta0=points.zeta0 / u,
         shape=points.shape * ratio,
-        bubble=points.bubble * inner / u[:, None],
+        bubble=points.bubble * internal / u[:, None],
         mass=points.mass * pair / (units.mass * units.length**2),
         force=points.force * units.length / energy,
     )
@@ -152,7 +152,7 @@ def _beam(beam: Beam, units: Units) -> Beam:
             beams.stiffness * pair / energy,
             rescaled,
             beams.preload * u / energy,
-            beams.inner_preload / inner,
+            beams.inner_preload / internal,
         ),
         damping=beam.damping * pair / (energy * units.time),
         at_a=_pose(beam.at_a, units.length),

@@ -113,8 +113,8 @@ def _constant(at: Callable[[float], Matrices], omega: float, groups: Sequence[Se
 
 def _transformed(matrices: Matrices, omega: float, groups: Sequence[Sequence[int]], psi: float) -> tuple[Complex, ...]:
     M, C, K = matrices
-    T, turn = _fourier(len(M), groups, psi)
-    D = 1j * omega * turn  # q̇ = T (ȧ + D a), q̈ = T (ä + 2 D ȧ + D² a)
+    T, orders_of_columns = _fourier(len(M), groups, psi)
+    D = 1j * omega * orders_of_columns  # q̇ = T (ȧ + D a), q̈ = T (ä + 2 D ȧ + D² a)
     adjoint = T.conj().T
     mass, damping = adjoint @ M @ T, adjoint @ C @ T
     return mass, damping + 2.0 * mass * D, adjoint @ K @ T + damping * D + mass * D**2
@@ -122,7 +122,7 @@ def _transformed(matrices: Matrices, omega: float, groups: Sequence[Sequence[int
 
 def _fourier(n: int, groups: Sequence[Sequence[int]], psi: float) -> tuple[Complex, Array]:
     """T (n, n) at an azimuth, and the order (n,) at which each of its columns turns."""
-    T, turn = np.eye(n, dtype=np.complex128), np.zeros(n)
+    T, orders_of_columns = np.eye(n, dtype=np.complex128), np.zeros(n)
     for group in groups:
         blades, k = len(group), np.arange(len(group))
         orders = list(range(-((blades - 1) // 2), (blades - 1) // 2 + 1))
@@ -132,5 +132,5 @@ def _fourier(n: int, groups: Sequence[Sequence[int]], psi: float) -> tuple[Compl
             orders.append(0)
         index = np.array(group, dtype=np.intp)
         T[np.ix_(index, index)] = np.stack(columns, axis=-1) / np.sqrt(blades)
-        turn[index] = orders
-    return T, turn
+        orders_of_columns[index] = orders
+    return T, orders_of_columns

@@ -13,11 +13,11 @@ def cache() -> Path:
     return Path(os.environ.get("XDG_CACHE_HOME") or Path.home() / ".cache") / "southwell"
 
 
-def private_folder(place: Path, name: str) -> Path | None:
-    """The folder ``name`` in ``place``, created if missing; None if it cannot be used or trusted."""
-    out = place / name
+def private_folder(parent: Path, name: str) -> Path | None:
+    """The folder ``name`` in ``parent``, created if missing; None if it cannot be used or trusted."""
+    out = parent / name
     try:
-        place.mkdir(parents=True, exist_ok=True)
+        parent.mkdir(parents=True, exist_ok=True)
         with suppress(FileExistsError):
             out.mkdir(mode=0o700)
         return out if trusted(out) and os.access(out, os.W_OK) else None

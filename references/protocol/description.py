@@ -38,10 +38,10 @@ from .registry import UnknownCodeError
 from .turbines import TurbineAdapter
 from .wire import Reply, decode_blade, encode, failed, foreign_exception, serve
 
-TOGETHER = 2
+PROCESSES = 2
 """Processes used at the same time."""
 
-ASKING = Limits(seconds=120.0)
+DESCRIBE_LIMITS = Limits(seconds=120.0)
 """Default limits for describing one code; most of the time is its import."""
 
 
@@ -93,7 +93,9 @@ class Description:
         return shares(self.independence)
 
 
-def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits = ASKING) -> tuple[Description, ...]:
+def describe(
+    names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits = DESCRIBE_LIMITS
+) -> tuple[Description, ...]:
     """Describe codes, in the order of ``names``.
 
     Args:
@@ -109,7 +111,7 @@ def describe(names: Sequence[str], blades: Sequence[Blade] = (), limits: Limits 
     bundled = {name: at for name, at in where.items() if registry.bundled(at["code"])}
     descriptions = {description.asked: description for description in _asked(bundled, encoded, limits)}
     unanswered = [name for name in where if name not in descriptions or descriptions[name].failure]
-    with ThreadPoolExecutor(TOGETHER) as threads:
+    with ThreadPoolExecutor(PROCESSES) as threads:
         alone = threads.map(lambda name: _asked({name: where[name]}, encoded, limits)[0], unanswered)
         descriptions |= zip(unanswered, alone, strict=True)
     for description in descriptions.values():

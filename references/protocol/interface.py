@@ -195,7 +195,7 @@ class BladeAdapter(Adapter):
             raise CodeError(f"{blade.name}: {reason}")
         return self.modes(blade, omega, elements, count)
 
-    def given(self, deck: Deck) -> "BladeAdapter":
+    def with_deck(self, deck: Deck) -> "BladeAdapter":
         """The adapter that solves the blade of a deck, which the code reads itself, in place of a described one."""
         raise CodeError("this code reads no files")
 

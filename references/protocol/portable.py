@@ -89,7 +89,7 @@ def resident(pids: list[int]) -> int:
 
 
 @dataclass(frozen=True)
-class Spoken:
+class Output:
     """What a spawned process wrote: its lines, the last bytes of standard error, its exit code, and why it was stopped."""
 
     lines: list[bytes]
@@ -103,11 +103,11 @@ def spawned(
     request: bytes,
     expected: int,
     time_limit: Callable[[int], float],
-    check: Callable[[int], str],
+    stop_reason: Callable[[int], str],
     longest_line: int,
     kept: int,
-    look: float,
-) -> Spoken:
+    poll_interval: float,
+) -> Output:
     """Start a process that calls ``main()`` of a module, send it a request, and read its lines.
 
     Args:
@@ -115,10 +115,10 @@ def spawned(
         request: one line.
         expected: number of lines after which it is ended.
         time_limit: number of lines so far → seconds until the next one.
-        check: process ID → why it must be stopped; called every ``look`` seconds.
+        stop_reason: process ID → why it must be stopped; called every ``poll_interval`` seconds.
         longest_line: largest size of a line, bytes.
         kept: number of last bytes of standard error that are kept.
-        look: s.
+        poll_interval: s.
     """
     one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     child = subprocess.Popen(
@@ -148,10 +148,10 @@ def spawned(
         deadline = monotonic() + time_limit(0)
         while len(lines) < expected and not stopped:
             try:
-                line = queue.get(timeout=max(min(look, deadline - monotonic()), 0.001))
+                line = queue.get(timeout=max(min(poll_interval, deadline - monotonic()), 0.001))
             except Empty:
                 late = monotonic() >= deadline
-                stopped = f"no answer within {time_limit(len(lines)):g} s" if late else check(child.pid)
+                stopped = f"no answer within {time_limit(len(lines)):g} s" if late else stop_reason(child.pid)
                 continue
             if not line.endswith(b"\n"):
                 stopped = f"an answer of more than {longest_line >> 20} MiB" if line else ""
@@ -162,11 +162,11 @@ def spawned(
         if len(lines) >= expected or stopped:
             _end(child)
         code = child.wait()
-        readers[1].join(look)
+        readers[1].join(poll_interval)
         for stream in (child.stdin, child.stdout):
             with suppress(OSError):
                 stream.close()
-    return Spoken(lines, bytes(errors), code, stopped)
+    return Output(lines, bytes(errors), code, stopped)
 
 
 def _end(child: subprocess.Popen[bytes]) -> None:

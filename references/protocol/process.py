@@ -13,7 +13,7 @@ from typing import IO, Literal
 
 from . import launch, portable
 
-KEPT = 8_192
+STDERR_BYTES = 8_192
 """Number of last bytes of standard error that are kept."""
 
 LONGEST_LINE = 16 * 2**20
@@ -28,7 +28,7 @@ ADDRESS_SPACE = 8
 START = 120.0
 """Time limit until the process is ready, s; no foreign code has run by then."""
 
-LOOK = 0.1
+POLL_INTERVAL = 0.1
 """Interval at which the process is polled, s."""
 
 GRACE = 5.0
@@ -93,23 +93,23 @@ def converse(module: str, request: bytes, expected: int, limits: Limits) -> tupl
 
 def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
     """The same where processes cannot be forked."""
-    said = portable.spawned(
+    output = portable.spawned(
         module,
         request,
         expected + 1,  # the first line says that it is ready
         time_limit=lambda lines: limits.seconds if lines else START,
-        check=lambda pid: _too_large(portable.resident([pid, *launch.descendants(pid)]), limits),
+        stop_reason=lambda pid: _too_large(portable.resident([pid, *launch.descendants(pid)]), limits),
         longest_line=LONGEST_LINE,
-        kept=KEPT,
-        look=LOOK,
+        kept=STDERR_BYTES,
+        poll_interval=POLL_INTERVAL,
     )
-    if not said.stopped:
-        return said.lines[1:], _crash(said.code, said.stderr.decode("utf-8", "replace"))
+    if not output.stopped:
+        return output.lines[1:], _crash(output.code, output.stderr.decode("utf-8", "replace"))
     kinds: dict[str, Kind] = {"no answer within": "timed out", "an answer of more than": "nonsense"}
     for start, kind in kinds.items():
-        if said.stopped.startswith(start):
-            return said.lines[1:], Failure(kind, said.stopped)
-    return said.lines[1:], Failure("crashed", said.stopped)
+        if output.stopped.startswith(start):
+            return output.lines[1:], Failure(kind, output.stopped)
+    return output.lines[1:], Failure("crashed", output.stopped)
 
 
 def _too_large(used: int, limits: Limits) -> str:
@@ -136,10 +136,10 @@ def _listen(
                 within = limits.seconds if lines else START
                 return lines[1:], Failure("timed out", f"no answer within {within:g} s"), stderr
             if now >= next_check:
-                next_check = now + LOOK
+                next_check = now + POLL_INTERVAL
                 if why := _too_large(_resident(child.pid), limits):
                     return lines[1:], Failure("crashed", why), stderr
-            events = ready.select(0.0 if ended else min(LOOK, deadline - now))
+            events = ready.select(0.0 if ended else min(POLL_INTERVAL, deadline - now))
             if ended and not any(key.fileobj is not stdin for key, _ in events):
                 break  # nothing is left in its pipes
             for key, _ in events:
@@ -155,7 +155,7 @@ def _listen(
                 if not received:
                     ready.unregister(key.fileobj)
                 elif key.fileobj is errors:
-                    stderr = (stderr + received)[-KEPT:]
+                    stderr = (stderr + received)[-STDERR_BYTES:]
                 else:
                     *whole, last = received.split(b"\n")
                     for part in whole:
@@ -172,13 +172,13 @@ def _listen(
     return lines[1 : expected + 1], None, stderr
 
 
-def _send(to: IO[bytes], rest: memoryview) -> memoryview:
+def _send(to: IO[bytes], unsent: memoryview) -> memoryview:
     try:
-        return rest[os.write(to.fileno(), rest) :]
+        return unsent[os.write(to.fileno(), unsent) :]
     except BlockingIOError:
-        return rest
+        return unsent
     except BrokenPipeError:
-        return rest[:0]
+        return unsent[:0]
 
 
 def _end(child: launch.Child) -> None:

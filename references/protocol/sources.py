@@ -57,7 +57,7 @@ def adapter(code: str) -> str:
     if spec is None:
         return ""
     if spec.submodule_search_locations:
-        folders = [Path(place) for place in spec.submodule_search_locations]
+        folders = [Path(name) for name in spec.submodule_search_locations]
         return sha256("".join(_digest(f, f.rglob("*.py")) for f in folders).encode()).hexdigest()
     folder = Path(spec.origin or "").resolve().parent
     return _digest(folder, folder.glob("*.py")) if spec.origin else ""

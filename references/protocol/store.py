@@ -177,9 +177,9 @@ def users() -> Store:
     Raises:
         OSError: if its folder is not writable, or other users can write to it, or the file is not a store.
     """
-    place = cache()
-    if not private_folder(place.parent, place.name):
-        raise OSError(f"{place}: not a folder that only this user can write to")
+    folder = cache()
+    if not private_folder(folder.parent, folder.name):
+        raise OSError(f"{folder}: not a folder that only this user can write to")
     return Store(path())
 
 

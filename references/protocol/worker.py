@@ -173,9 +173,9 @@ def _exchange(
             out[k] = answer
     asked = [k for k in range(len(questions)) if k not in out]
     lines, ended = converse(__name__, request(asked), len(asked), limits) if asked else ([], NOTHING)
-    for place, (k, line) in enumerate(zip(asked, lines, strict=False)):
+    for number, (k, line) in enumerate(zip(asked, lines, strict=False)):
         try:
-            data = boundary.reply(line, place)
+            data = boundary.reply(line, number)
         except NonsenseError as error:
             ended = Failure("nonsense", str(error))
             break
@@ -256,9 +256,9 @@ def _answer(request: Any) -> Iterator[Reply]:
     code = registry.loaded(request)
     if not isinstance(code, Failure) and request.get("deck"):
         try:
-            code = code.given(Deck(**request["deck"]))
+            code = code.with_deck(Deck(**request["deck"]))
         except BaseException as error:
-            code = Failure("nonsense", foreign_exception(error, "given()")["reason"])
+            code = Failure("nonsense", foreign_exception(error, "with_deck()")["reason"])
     if isinstance(code, Failure):
         yield from [failed(code.kind, code.reason)] * len(asked)
     elif "mechanisms" in request:

@@ -30,7 +30,7 @@ FORMATS = ("ElastoDyn", "BModes")
 
 
 class PyBModesDeck(BladeAdapter):
-    """See the module; the deck is given by ``given``."""
+    """See the module; the deck is given to ``with_deck``."""
 
     name = "pybmodes-deck"
     title = "pyBModes, given the deck"
@@ -51,7 +51,7 @@ class PyBModesDeck(BladeAdapter):
     def __init__(self, deck: Deck | None = None) -> None:
         self.deck = deck
 
-    def given(self, deck: Deck) -> BladeAdapter:
+    def with_deck(self, deck: Deck) -> BladeAdapter:
         """See ``interface.BladeAdapter``."""
         return PyBModesDeck(deck)
 

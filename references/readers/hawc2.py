@@ -37,9 +37,9 @@ def read(path: Path, asked: Asked) -> Stations:
     body = _blade(HTCFile(str(htc), modelpath=str(htc.parent))) if htc else None
     subset = asked.subset
     if body is not None:
-        given = body.timoschenko_input
-        subset = subset or (tuple(int(v) for v in given.set[:2]) if "set" in given.keys() else None)  # noqa: SIM118
-        path = _beside(htc, str(given.filename[0])) if htc is not None and path == htc else path
+        table_input = body.timoschenko_input
+        subset = subset or (tuple(int(v) for v in table_input.set[:2]) if "set" in table_input.keys() else None)  # noqa: SIM118
+        path = _beside(htc, str(table_input.filename[0])) if htc is not None and path == htc else path
     file = StFile(str(path))
     subset = subset or next((a, b) for a, data in file.main_data_sets.items() for b in data)
     rows = file.main_data_sets[subset[0]][subset[1]]

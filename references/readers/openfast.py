@@ -163,6 +163,6 @@ def _beamdyn(table: Any, main: Any, hub: Any, reader: str, asked: Asked) -> Stat
     eta, stiffness, mass = (np.array(properties[name], float) for name in ("span", "K", "M"))
     arc = curve.lengths()[-1] * eta
     where = curve.parameter(arc)
-    both = [sections.permuted(0.5 * (k + np.swapaxes(k, 1, 2)), *sections.OPENFAST) for k in (stiffness, mass)]
-    turned = beamdyn_roll(tangents(curve, where)) - np.radians(twist.values(where)[:, 0])
-    return Stations(reader, arc, both[0], both[1], turned, curve.values(where), mounting(hub))
+    matrices = [sections.permuted(0.5 * (k + np.swapaxes(k, 1, 2)), *sections.OPENFAST) for k in (stiffness, mass)]
+    twist_angle = beamdyn_roll(tangents(curve, where)) - np.radians(twist.values(where)[:, 0])
+    return Stations(reader, arc, matrices[0], matrices[1], twist_angle, curve.values(where), mounting(hub))

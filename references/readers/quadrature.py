@@ -50,8 +50,8 @@ def weigh(blade: Mounted, tip: Array, start: float = 0.0, rotary: bool = True) -
     """
     s, weight = _points(blade.stations.s, start)
     bodies = np.concatenate([weight[:, None, None] * linear(blade.stations.s, blade.stations.mass, s), tip[None]])
-    place, axes = placed(blade, np.append(s, blade.stations.s[-1]))
-    return _sum(bodies, axes, place, rotary)
+    position, axes = placed(blade, np.append(s, blade.stations.s[-1]))
+    return _sum(bodies, axes, position, rotary)
 
 
 def bend(blade: Mounted) -> Array:
@@ -61,11 +61,11 @@ def bend(blade: Mounted) -> Array:
     a unit load at the tip.
     """
     s, weight = _points(blade.stations.s, 0.0)
-    place, axes = placed(blade, np.append(s, blade.stations.s[-1]))
+    position, axes = placed(blade, np.append(s, blade.stations.s[-1]))
     stiffness = blade.stations.stiffness
     soft = np.flatnonzero(np.isfinite(np.diagonal(stiffness, axis1=1, axis2=2)).all(axis=0))
     compliance = np.linalg.inv(linear(blade.stations.s, stiffness[:, soft[:, None], soft], s))
-    arm = place[-1] - place[:-1]
+    arm = position[-1] - position[:-1]
     here = np.zeros((6, len(s), 2, 3))
     for load, (force, moment) in zip(here, np.eye(6).reshape(6, 2, 3), strict=True):
         load[:, 0], load[:, 1] = force, moment + np.cross(arm, force)
@@ -90,30 +90,30 @@ def linear(stations: Array, values: Array, s: Array) -> Array:
 
 def placed(blade: Mounted, s: Array) -> tuple[Array, Array]:
     """Positions (k, 3) from the hub's centre and axes (k, 3, 3) of sections, in the hub's axes."""
-    place, tangent = _curve(blade.stations, blade.kinks, s)
+    position, tangent = _curve(blade.stations, blade.kinks, s)
     across = np.cross([1.0, 0.0, 0.0], tangent)
     sine = np.linalg.norm(across, axis=1)
     vector = across * np.divide(np.arctan2(sine, tangent[:, 0]), sine, out=np.ones_like(sine), where=sine > 0)[:, None]
-    turn = Rotation.from_rotvec(np.outer(np.interp(s, blade.stations.s, blade.stations.twist), [1.0, 0.0, 0.0]))
+    twist = Rotation.from_rotvec(np.outer(np.interp(s, blade.stations.s, blade.stations.twist), [1.0, 0.0, 0.0]))
     cone = Rotation.from_rotvec([0.0, -blade.precone, 0.0])
     mounted = cone * Rotation.from_rotvec([blade.pitch, 0.0, 0.0])
-    axes = (mounted * Rotation.from_rotvec(vector) * turn).as_matrix()
-    return cone.apply([blade.hub_radius, 0.0, 0.0]) + mounted.apply(place), axes
+    axes = (mounted * Rotation.from_rotvec(vector) * twist).as_matrix()
+    return cone.apply([blade.hub_radius, 0.0, 0.0]) + mounted.apply(position), axes
 
 
 def _curve(blade: Stations, kinks: tuple[float, ...], s: Array) -> tuple[Array, Array]:
     """Points and unit tangents (k, 3) at arc lengths, each piece between kinks by its own spline."""
     ends = np.array([blade.s[0], *kinks, blade.s[-1]])
     piece = np.clip(np.searchsorted(ends, s, side="right") - 1, 0, len(ends) - 2)
-    place, slope = np.empty((len(s), 3)), np.empty((len(s), 3))
+    position, slope = np.empty((len(s), 3)), np.empty((len(s), 3))
     for k in np.unique(piece):
         own = (blade.s >= ends[k]) & (blade.s <= ends[k + 1])
         spline = make_interp_spline(blade.s[own], blade.curve[own], k=min(3, int(own.sum()) - 1))
-        place[piece == k], slope[piece == k] = spline(s[piece == k]), spline(s[piece == k], nu=1)
-    return place, slope / np.linalg.norm(slope, axis=1, keepdims=True)
+        position[piece == k], slope[piece == k] = spline(s[piece == k]), spline(s[piece == k], nu=1)
+    return position, slope / np.linalg.norm(slope, axis=1, keepdims=True)
 
 
-def _sum(bodies: Array, axes: Array, place: Array, rotary: bool) -> tuple[float, Array, float]:
+def _sum(bodies: Array, axes: Array, position: Array, rotary: bool) -> tuple[float, Array, float]:
     """Of bodies with inertia (n, 6, 6) in axes (n, 3, 3) about points (n, 3): ∫ r rᵀ dm is W = m p pᵀ + p cᵀ + c pᵀ + S."""
     m = bodies[:, 0, 0]
     own = np.stack([bodies[:, 2, 4] * -1, -bodies[:, 0, 5], bodies[:, 0, 4]], axis=1)  # m times the centre
@@ -124,6 +124,6 @@ def _sum(bodies: Array, axes: Array, place: Array, rotary: bool) -> tuple[float,
         point = own[:-1, :, None] * own[:-1, None, :]
         second[:-1] = np.divide(point, m[:-1, None, None], out=np.zeros_like(point), where=m[:-1, None, None] > 0)
     S = axes @ second @ np.swapaxes(axes, 1, 2)
-    squares = [m * place[:, k] ** 2 + 2 * place[:, k] * first[:, k] + S[:, k, k] for k in (0, 1)]
-    total = first.sum(0) + m @ place
+    squares = [m * position[:, k] ** 2 + 2 * position[:, k] * first[:, k] + S[:, k, k] for k in (0, 1)]
+    total = first.sum(0) + m @ position
     return float(m.sum()), total, float(sum(part.sum() for part in squares))

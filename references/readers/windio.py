@@ -60,9 +60,11 @@ def read(path: Path, asked: Asked) -> Stations:
     curve, angle = _axis(axis, twist, to_radians)
     arc = eta * curve.lengths()[-1]
     at = curve.parameter(arc)
-    turned = beamdyn_roll(tangents(curve, at)) - angle(at)
+    twist_angle = beamdyn_roll(tangents(curve, at)) - angle(at)
     mount = {**_hub(turbine), "tip_mass": _tip(elastic)}
-    return Stations(reader, arc, sections.rigid(matrices[0], *absent), matrices[1], turned, curve.values(at), mount)
+    return Stations(
+        reader, arc, sections.rigid(matrices[0], *absent), matrices[1], twist_angle, curve.values(at), mount
+    )
 
 
 def _entries(elastic: Mapping[str, Any]) -> tuple[list[Array], Array, Array]:

@@ -99,7 +99,7 @@ class ScikitFemBeam(BladeAdapter):
         frequencies, vectors = gyroscopic_modes(M, C, K, count)
         q = np.zeros((basis.N, len(frequencies)), complex)
         q[free] = vectors
-        shapes = np.stack([read @ q[of] for of, read in readings], axis=-1).transpose(1, 0, 2)
+        shapes = np.stack([sampling @ q[dofs] for dofs, sampling in readings], axis=-1).transpose(1, 0, 2)
         return Modes(omega, frequencies, shapes, basis.mesh.nelements)
 
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint:
@@ -108,10 +108,10 @@ class ScikitFemBeam(BladeAdapter):
         M, _, K = _matrices(blade, 0.0, parts)
         q = np.zeros((basis.N, 6))
         bases = basis.split_bases()
-        for k, (of, field) in enumerate(zip(basis.split_indices(), bases, strict=True)):
-            q[of, k] = field.project(lambda x: np.ones_like(x[0]))
+        for k, (dofs, field) in enumerate(zip(basis.split_indices(), bases, strict=True)):
+            q[dofs, k] = field.project(lambda x: np.ones_like(x[0]))
             if k in (1, 2):  # rotations about z and y move v and w
-                q[of, 5 if k == 1 else 4] = (1 if k == 1 else -1) * field.project(lambda x: blade.hub_radius + x[0])
+                q[dofs, 5 if k == 1 else 4] = (1 if k == 1 else -1) * field.project(lambda x: blade.hub_radius + x[0])
         weighed = of_matrix(q.T @ (M @ q), basis.mesh.nelements)
         if not clamped(blade):
             return weighed
@@ -155,14 +155,14 @@ class Part:
 
     Attributes:
         basis: of the fields u, v, w, φ.
-        steady: of the steady stretch and twist; cubic, because their derivatives are needed.
+        steady_basis: of the steady stretch and twist; cubic, because their derivatives are needed.
         x: (elements, points) arc length, m.
         mass, I_x, I_y, I_z: (elements, points) in section axes.
         angle: (elements, points) from the axes y, z to those of the undeformed sections, rad.
     """
 
     basis: Any
-    steady: Any
+    steady_basis: Any
     x: Array
     mass: Array
     I_x: Array
@@ -180,21 +180,21 @@ def _mesh(blade: Blade, elements: int) -> tuple[Any, list[Part], list[tuple[Any,
     """
     basis = _basis(element_ends(blade, elements, COARSEST))
     at = STATIONS[None] * blade.length
-    readings = [(of, part.probes(at)) for of, part in zip(basis.split_indices(), basis.split_bases(), strict=True)]
+    readings = [(dofs, part.probes(at)) for dofs, part in zip(basis.split_indices(), basis.split_bases(), strict=True)]
     return basis, _parts(blade, basis), readings
 
 
 def _parts(blade: Blade, basis: Any) -> list[Part]:
     """The line, and the tip if it has mass."""
     fem = skfem()
-    steady = basis.with_element(fem.ElementLineHermite())
+    steady_basis = basis.with_element(fem.ElementLineHermite())
     x, at = _sections(blade, basis)
-    parts = [Part(basis, steady, x, at.mass, at.I_x, at.I_y, at.I_z, at.twist + blade.pitch)]
+    parts = [Part(basis, steady_basis, x, at.mass, at.I_x, at.I_y, at.I_z, at.twist + blade.pitch)]
     if blade.tip_mass.any():
         tip = basis.boundary("tip")
         x, at = _sections(blade, tip)
         mass, _, _, I_x, I_y, I_z = np.diag(blade.tip_mass)[:, None, None]
-        parts.append(Part(tip, steady.boundary("tip"), x, mass, I_x, I_y, I_z, at.twist + blade.pitch))
+        parts.append(Part(tip, steady_basis.boundary("tip"), x, mass, I_x, I_y, I_z, at.twist + blade.pitch))
     return parts
 
 
@@ -209,27 +209,27 @@ def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Arr
     """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, which is linear for any amplitude."""
     fem = skfem()
     load = fem.LinearForm(forms.load)
-    steady = parts[0].steady
-    K, f = bilinear(forms.spring, steady, k=at.EA), steady.zeros()
+    steady_basis = parts[0].steady_basis
+    K, f = bilinear(forms.spring, steady_basis, k=at.EA), steady_basis.zeros()
     for p in parts:
-        K = K - omega**2 * bilinear(forms.bedding, p.steady, k=p.mass)
-        f = f + omega**2 * load.assemble(p.steady, k=p.mass * (blade.hub_radius + p.x))
-    return fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
+        K = K - omega**2 * bilinear(forms.bedding, p.steady_basis, k=p.mass)
+        f = f + omega**2 * load.assemble(p.steady_basis, k=p.mass * (blade.hub_radius + p.x))
+    return fem.solve(*fem.condense(K, f, D=steady_basis.get_dofs("root").all("u")))
 
 
 def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
     """Steady rotation of the sections about x by the propeller moment: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, by Newton's method."""
     fem = skfem()
     load = fem.LinearForm(forms.load)
-    steady = parts[0].steady
-    torsion, torsion_angle = bilinear(forms.spring, steady, k=at.GJ), steady.zeros()
+    steady_basis = parts[0].steady_basis
+    torsion, torsion_angle = bilinear(forms.spring, steady_basis, k=at.GJ), steady_basis.zeros()
     for _ in range(NEWTON):
         K, f = torsion, -torsion @ torsion_angle
         for p in parts:
-            J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(torsion_angle))
-            K = K - omega**2 * bilinear(forms.bedding, p.steady, k=J_yy - J_zz)
-            f = f + omega**2 * load.assemble(p.steady, k=J_yz)
-        step = fem.solve(*fem.condense(K, f, D=steady.get_dofs("root").all("u")))
+            J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady_basis.interpolate(torsion_angle))
+            K = K - omega**2 * bilinear(forms.bedding, p.steady_basis, k=J_yy - J_zz)
+            f = f + omega**2 * load.assemble(p.steady_basis, k=J_yz)
+        step = fem.solve(*fem.condense(K, f, D=steady_basis.get_dofs("root").all("u")))
         torsion_angle = torsion_angle + step
         if np.abs(step).max() < 1e-8:  # the error of the next is its square
             return torsion_angle
@@ -241,25 +241,30 @@ def _matrices(blade: Blade, omega: float, parts: list[Part]) -> tuple[Any, Any, 
     basis = parts[0].basis
     at = _sections(blade, basis)[1]
     stretch, torsion_angle = _stretch(blade, parts, at, omega), _untwist(parts, at, omega)
-    U, rotation = (parts[0].steady.interpolate(field) for field in (stretch, torsion_angle))
+    U, rotation = (parts[0].steady_basis.interpolate(field) for field in (stretch, torsion_angle))
     if not (U.grad[0] > -1).all():
         raise CodeError(
             f"omega: {omega:g} rad/s: no steady stretch: centrifugal force exceeds axial stiffness; lower the speed"
         )
     EI_yy, EI_zz, EI_yz = forms.rotated(at.EI_y, at.EI_z, parts[0].angle + rotation)
     stiffness = {"EA": at.EA, "GJ": at.GJ, "EI_yy": EI_yy, "EI_zz": EI_zz, "EI_yz": EI_yz}
-    steady = {"g": 1 + U.grad[0], "g_s": U.hess[0, 0], "tension": at.EA * U.grad[0], "torque": at.GJ * rotation.grad[0]}
-    K = bilinear(forms.elastic, basis, **stiffness, **steady)
+    prestress = {
+        "g": 1 + U.grad[0],
+        "g_s": U.hess[0, 0],
+        "tension": at.EA * U.grad[0],
+        "torque": at.GJ * rotation.grad[0],
+    }
+    K = bilinear(forms.elastic, basis, **stiffness, **prestress)
     M = C = 0 * K
     for p in parts:
-        J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady.interpolate(torsion_angle))
+        J_yy, J_zz, J_yz = forms.rotated(p.I_y, p.I_z, p.angle + p.steady_basis.interpolate(torsion_angle))
         inertia = {"mass": p.mass, "J_xx": p.I_x, "J_yy": J_yy, "J_zz": J_zz, "J_yz": J_yz}
-        inertia["g"] = 1 + p.steady.interpolate(stretch).grad[0]
+        inertia["g"] = 1 + p.steady_basis.interpolate(stretch).grad[0]
         M = M + bilinear(forms.inertia, p.basis, **inertia)
         C = C + omega * bilinear(forms.gyroscopic, p.basis, **inertia)
         K = K - omega**2 * bilinear(forms.centrifugal, p.basis, **inertia)
     springs = np.zeros(basis.N)
-    root = 1 + stretch[parts[0].steady.get_dofs("root").nodal["u_x"][0]]
+    root = 1 + stretch[parts[0].steady_basis.get_dofs("root").nodal["u_x"][0]]
     for slope, spring in _hinges(blade, basis).items():
         springs[slope] = spring / root**2  # the section rotates by the slope over the stretch
     return M, C, K + dia_array((springs[None], [0]), shape=K.shape)

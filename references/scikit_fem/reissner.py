@@ -129,15 +129,15 @@ def _motions(beam: Beam, state: State) -> spla.LinearOperator:
     """
     B = (strain_rate(beam, state) @ beam.to_free).tocsc()
     roots, soft = B.shape[1] - B.shape[0], _soft(beam)
-    inner = spla.splu(B[:, roots:])
+    strain_factor = spla.splu(B[:, roots:])
     strained = sp.csc_array(sp.hstack([-B[:, :roots], beam.gram.tocsc()[:, soft]]))
 
     def motion(q: Array) -> Array:
-        return beam.to_free @ np.concatenate([q[:roots], inner.solve(strained @ q)])
+        return beam.to_free @ np.concatenate([q[:roots], strain_factor.solve(strained @ q)])
 
     def work(force: Array) -> Array:
         free = beam.to_free.T @ force
-        out = strained.T @ inner.solve(free[roots:], "T")
+        out = strained.T @ strain_factor.solve(free[roots:], "T")
         out[:roots] += free[:roots]
         return out
 
@@ -190,9 +190,12 @@ def _shapes(beam: Beam, q: NDArray[np.complex128]) -> NDArray[np.complex128]:
     sampling = scalar.probes(STATIONS[None] * beam.blade.length)
     out = np.empty((q.shape[1], len(STATIONS), 4), complex)
     for k in range(4):
-        of = np.empty(scalar.N, dtype=np.intp)
-        of[scalar.nodal_dofs[0]], of[scalar.interior_dofs[0]] = beam.basis.nodal_dofs[k], beam.basis.interior_dofs[k]
-        out[:, :, k] = (sampling @ q[of]).T
+        dofs = np.empty(scalar.N, dtype=np.intp)
+        dofs[scalar.nodal_dofs[0]], dofs[scalar.interior_dofs[0]] = (
+            beam.basis.nodal_dofs[k],
+            beam.basis.interior_dofs[k],
+        )
+        out[:, :, k] = (sampling @ q[dofs]).T
     return out
 
 

@@ -112,12 +112,12 @@ def beam_of(blade: Blade, ends: Array) -> Beam:
         parts.append(_part(blade, basis.boundary("tip"), blade.tip_mass))
     root = np.array(basis.get_dofs("root").flatten())
     free_root = np.flatnonzero(np.isfinite(blade.root))
-    inner = np.setdiff1d(np.arange(basis.N), root)
+    beyond_root = np.setdiff1d(np.arange(basis.N), root)
     to_root_axes = np.kron(np.eye(2), root_axes(blade))[:, free_root]
-    count = len(free_root) + len(inner)
+    count = len(free_root) + len(beyond_root)
     to_free = sp.lil_array((basis.N, count))
     to_free[root, : len(free_root)] = to_root_axes
-    to_free[inner, np.arange(len(free_root), count)] = 1.0
+    to_free[beyond_root, np.arange(len(free_root), count)] = 1.0
     springs = np.zeros(count)
     springs[: len(free_root)] = blade.root[free_root]
     return Beam(
@@ -140,8 +140,8 @@ def _compliance(blade: Blade, basis: Any, soft: NDArray[np.bool_]) -> Array:
     s = np.array(basis.global_coordinates())[0]
     stiffness = stiffness_at(blade, s.ravel()).reshape(*s.shape, 6, 6)
     out = np.zeros_like(stiffness)
-    both = (..., np.flatnonzero(soft)[:, None], np.flatnonzero(soft))
-    out[both] = np.linalg.inv(stiffness[both])
+    soft_block = (..., np.flatnonzero(soft)[:, None], np.flatnonzero(soft))
+    out[soft_block] = np.linalg.inv(stiffness[soft_block])
     return out
 
 

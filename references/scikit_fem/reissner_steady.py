@@ -63,9 +63,9 @@ def _raised(beam: Beam, omega: float, steps: int) -> State | None:
 
 def _statics(beam: Beam, state: State, omega: float) -> Array:
     """Section forces that balance the centrifugal force on the undeformed, clamped blade: a stiff initial guess."""
-    inner = np.setdiff1d(np.arange(beam.basis.N), beam.basis.get_dofs("root").flatten())
-    B = strain_rate(beam, state).tocsc()[:, inner]
-    return spla.splu(B.T.tocsc()).solve(centrifugal_force(beam, state, omega)[inner])
+    beyond_root = np.setdiff1d(np.arange(beam.basis.N), beam.basis.get_dofs("root").flatten())
+    B = strain_rate(beam, state).tocsc()[:, beyond_root]
+    return spla.splu(B.T.tocsc()).solve(centrifugal_force(beam, state, omega)[beyond_root])
 
 
 def _equilibrium(beam: Beam, state: State, omega: float) -> State | None:

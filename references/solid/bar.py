@@ -23,7 +23,7 @@ from ..protocol.cache_last import cache_last
 from ..protocol.interface import CodeError
 from ..sampling import Sections, sample
 from .materials import Orthotropic
-from .mesh import Bricks, blade
+from .mesh import Bricks, straight_bricks
 
 Array = NDArray[np.float64]
 
@@ -94,17 +94,17 @@ def modes(blade: Blade, omega: float, elements: int, count: int, solve: Solve) -
 
 
 @cache_last
-def bar(of: Blade, elements: int) -> tuple[Bricks, Orthotropic]:
+def bar(blade: Blade, elements: int) -> tuple[Bricks, Orthotropic]:
     """The solid equivalent to a uniform blade, from the rotor's axis outwards, and its material."""
-    at = sample(of, 0.0)
+    at = sample(blade, 0.0)
     chord, thickness = (float(np.sqrt(12.0 * EI[0] / at.EA[0])) for EI in (at.EI_z, at.EI_y))
     area = chord * thickness
     young = float(at.EA[0]) / area
     shear_y, shear_z = (float(min(GA[0] / (COWPER * area), RIGID * young)) for GA in (at.GA_y, at.GA_z))
-    x = of.hub_radius + np.linspace(0.0, of.length, elements + 1)
+    x = blade.hub_radius + np.linspace(0.0, blade.length, elements + 1)
     shear = (shear_y, shear_z, max(shear_y, shear_z))
     material = Orthotropic((young, young, young), (0.0, 0.0, 0.0), shear, float(at.mass[0]) / area)
-    return blade(x, chord, thickness, across=ACROSS), material
+    return straight_bricks(x, chord, thickness, across=ACROSS), material
 
 
 def _stretching(blade: Blade) -> float:

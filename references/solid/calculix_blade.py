@@ -13,7 +13,7 @@ from . import bar, calculix, hexahedra
 from .curved import with_root_forces
 from .known import ACROSS, recognised
 from .materials import Orthotropic
-from .mesh import Bricks, clamped
+from .mesh import Bricks, clamped_section
 
 
 class Calculix(BladeAdapter):
@@ -57,7 +57,7 @@ class Calculix(BladeAdapter):
             return calculix.modes(bricks, solid.material, omega, count, root, points)
 
         def solved(bricks: Bricks, material: Orthotropic, count: int) -> Modes:
-            return calculix.modes(bricks, material, omega, count, clamped(blade.hub_radius))
+            return calculix.modes(bricks, material, omega, count, clamped_section(blade.hub_radius))
 
         return bar.modes(blade, omega, elements, count, solved)
 

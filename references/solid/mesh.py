@@ -69,7 +69,7 @@ class Bricks:
         return Bricks(self.corners[start : stop + 1], self.axes[within], self.nodes[within])
 
 
-def blade(
+def straight_bricks(
     x: Array,
     chord: ArrayLike,
     thickness: ArrayLike,
@@ -101,7 +101,7 @@ Clamp = Callable[[Array], Bools]
 """Function of node positions (n, 3), m, that returns which displacements (n, 3) are fixed."""
 
 
-def clamped(at: float) -> Clamp:
+def clamped_section(at: float) -> Clamp:
     """Fix all displacements of the section at ``x = at`` (m)."""
 
     def fixed(nodes: Array) -> Bools:

@@ -23,7 +23,7 @@ from . import bar, hexahedra
 from .curved import CurvedSolid, layer, with_root_forces
 from .known import ACROSS, recognised
 from .materials import Orthotropic
-from .mesh import Bricks, clamped
+from .mesh import Bricks, clamped_section
 
 Array = NDArray[np.float64]
 
@@ -66,7 +66,7 @@ class ScikitFemSolid(BladeAdapter):
             return modes(solid, omega, bar.LAYERS * -(-elements // bar.LAYERS), count)
 
         def solved(bricks: Bricks, material: Orthotropic, count: int) -> Modes:
-            return hexahedra.modes(bricks, material, omega, count, clamped(blade.hub_radius))
+            return hexahedra.modes(bricks, material, omega, count, clamped_section(blade.hub_radius))
 
         return bar.modes(blade, omega, elements, count, solved)
 

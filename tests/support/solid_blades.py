@@ -11,7 +11,7 @@ from southwell.core.condense.segments import Segment
 from southwell.core.space import spatial as sp
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
-from southwell.references.solid.mesh import Bricks, blade
+from southwell.references.solid.mesh import Bricks, straight_bricks
 from southwell.tests.support.solid_sections import lumped, lumped_by_part
 
 Array = NDArray[np.float64]
@@ -45,7 +45,7 @@ def at(x: float) -> Array:
 
 def square_bar(length: float, layers: int, across: int = 2, start: float = 0.0) -> Bricks:
     """A piece of the paper's cantilever as a solid."""
-    return blade(np.linspace(start, start + length, layers + 1), SIDE, SIDE, across=(across, across))
+    return straight_bricks(np.linspace(start, start + length, layers + 1), SIDE, SIDE, across=(across, across))
 
 
 def cantilever_segment(kind: ties.Kind, count: int = SEGMENTS) -> Segment:
@@ -66,7 +66,7 @@ def twisted(layers: int = LAYERS, across: tuple[int, int] = ACROSS) -> Bricks:
     """A blade of 1 m, its chord 160 → 80 mm, thickness 24 → 8 mm at mid-chord and 0.4 of it at the edges, twist 30° → 0."""
     x = np.linspace(ROOT, ROOT + SPAN, layers + 1)
     t = (x - ROOT) / SPAN
-    return blade(x, 0.16 - 0.08 * t, 0.024 - 0.016 * t, np.radians(30.0) * (1 - t), across=across, edge=0.4)
+    return straight_bricks(x, 0.16 - 0.08 * t, 0.024 - 0.016 * t, np.radians(30.0) * (1 - t), across=across, edge=0.4)
 
 
 def cuts(bricks: Bricks, segments: int = SEGMENTS) -> Index:
@@ -109,7 +109,7 @@ def torsion(length: float, kind: ties.Kind | None) -> float:
     layers = round(length / LAYER)
     margin = 0 if kind else round(CHORD / LAYER)
     x = np.linspace(-margin * LAYER, (layers + margin) * LAYER, layers + 2 * margin + 1)
-    bricks = blade(x, CHORD, THICK, across=(6, 2))
+    bricks = straight_bricks(x, CHORD, THICK, across=(6, 2))
     model = finite_elements(bricks, SQUARE)
     places = (0.0, length) if kind else (x[0], 0.0, length, x[-1])
     tied = [ties.section(model, at(v), f"{v:g} m", kind or "average") for v in places]

@@ -10,7 +10,7 @@ from southwell.core.condense import segments, ties
 from southwell.core.modes import Modes
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
-from southwell.references.solid.mesh import clamped
+from southwell.references.solid.mesh import clamped_section
 from southwell.references.theories import timoshenko as timoshenko_beam
 from southwell.tests.support import solid_blades
 from southwell.tests.support.solid_blades import (
@@ -77,7 +77,7 @@ def square_beam(material: Material = SQUARE, side: float = SIDE, length: float =
 @cache
 def twisted_modes(omega: float, coriolis: bool = True) -> Modes:
     """The lowest modes of the whole blade, by scikit-fem."""
-    return hexahedra.modes(twisted(), STEEL, omega, 6, clamped(ROOT), coriolis=coriolis)
+    return hexahedra.modes(twisted(), STEEL, omega, 6, clamped_section(ROOT), coriolis=coriolis)
 
 
 @cache

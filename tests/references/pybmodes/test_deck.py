@@ -33,7 +33,7 @@ def read(path: Path, mount: Mount) -> tuple[Blade, Deck]:
 
 def extrapolated(given: Deck, blade: Blade, omega: float) -> NDArray[Any]:
     """Frequencies without the error of second order."""
-    coarse, fine = (CODE.given(given).solve(blade, omega, n, 3).frequencies for n in (20, 40))
+    coarse, fine = (CODE.with_deck(given).solve(blade, omega, n, 3).frequencies for n in (20, 40))
     return fine + (fine - coarse) / 3.0
 
 
@@ -83,7 +83,7 @@ def test_a_changed_file_has_another_digest(tmp_path: Path) -> None:
 def test_the_code_runs_in_its_own_process_and_a_deck_that_it_cannot_read_is_a_failure(tmp_path: Path) -> None:
     blade, given = read(EXAMPLE, NREL)
     (here,) = answers(PATH, blade, [(0.0, 20, 3)], Limits(), deck=given)
-    assert here.frequencies == pytest.approx(CODE.given(given).solve(blade, 0.0, 20, 3).frequencies)  # type: ignore[union-attr]
+    assert here.frequencies == pytest.approx(CODE.with_deck(given).solve(blade, 0.0, 20, 3).frequencies)  # type: ignore[union-attr]
     (tmp_path / "empty.dat").write_text("nothing\n")
     (failure,) = answers(
         PATH, blade, [(0.0, 20, 3)], Limits(), deck=replace(given, files=(str(tmp_path / "empty.dat"),))

@@ -12,7 +12,7 @@ from southwell.core.effects import Effects
 from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import calculix, hexahedra
-from southwell.references.solid.mesh import blade, clamped
+from southwell.references.solid.mesh import clamped_section, straight_bricks
 from southwell.tests.support.solid_sections import clamped_free_to_contract, section_weights
 from southwell.tests.support.solids import (
     HUB,
@@ -56,7 +56,7 @@ def test_twisted_blade_three_ways(omega: float) -> None:
     The five lowest modes, the fifth is torsion. Without Coriolis forces, which CalculiX leaves out: 9e-5 of a
     frequency.
     """
-    theirs = calculix.modes(twisted(), STEEL, omega, 6, clamped(ROOT))
+    theirs = calculix.modes(twisted(), STEEL, omega, 6, clamped_section(ROOT))
     ours = twisted_modes(omega, coriolis=False)
     np.testing.assert_allclose(theirs.frequencies[:5], ours.frequencies[:5], rtol=1e-3)
     assert (mac(theirs, ours).diagonal()[:5] > 0.99).all()
@@ -99,7 +99,7 @@ def test_segment_from_calculixs_matrices() -> None:
 def test_section_weights_integrate_a_tapered_twisted_section(layer: int) -> None:
     """Area and second moments of chord × thickness, rotated by the twist."""
     x, chord, thick, twist = np.array([0.0, 1.0]), np.array([0.4, 0.3]), np.array([0.2, 0.1]), np.array([0.5, 0.1])
-    bricks = blade(x, chord, thick, twist, across=(2, 3))
+    bricks = straight_bricks(x, chord, thick, twist, across=(2, 3))
     places, nodes = calculix.numbered(bricks)
     at_layer = np.unique(places[2 * layer])[1:]
     W = section_weights(bricks, layer)
@@ -140,15 +140,15 @@ def test_its_substructure_is_rejected() -> None:
 def test_errors_name_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
     bricks = twisted(2, (2, 2))
     with pytest.raises(CodeError, match=r"across: \(1, 1\) elements"):
-        calculix.modes(square_bar(1.0, 20, across=1), SQUARE, 0.0, 2, clamped(0.0))
+        calculix.modes(square_bar(1.0, 20, across=1), SQUARE, 0.0, 2, clamped_section(0.0))
     with pytest.raises(CodeError, match="clamp: fixes 0 displacements"):
-        calculix.modes(bricks, STEEL, 0.0, 2, clamped(0.0))
-    inside_out = blade(np.linspace(0.0, 1.0, 3), 0.1, -0.1, across=(2, 2))
+        calculix.modes(bricks, STEEL, 0.0, 2, clamped_section(0.0))
+    inside_out = straight_bricks(np.linspace(0.0, 1.0, 3), 0.1, -0.1, across=(2, 2))
     with pytest.raises(CodeError, match=r"ccx ended with .*\*ERROR in e_c3d: nonpositive jacobian"):
-        calculix.modes(inside_out, STEEL, 0.0, 2, clamped(0.0))
+        calculix.modes(inside_out, STEEL, 0.0, 2, clamped_section(0.0))
     with pytest.raises(CodeError, match=r"ccx (ended|found)"):
-        calculix.modes(bricks, STEEL, 1e5, 2, clamped(ROOT))
+        calculix.modes(bricks, STEEL, 1e5, 2, clamped_section(ROOT))
     monkeypatch.setenv("PATH", "")
     assert calculix.version() is None
     with pytest.raises(CodeError, match="ccx is not on the PATH: apt-get install calculix-ccx"):
-        calculix.modes(bricks, STEEL, 0.0, 2, clamped(ROOT))
+        calculix.modes(bricks, STEEL, 0.0, 2, clamped_section(ROOT))

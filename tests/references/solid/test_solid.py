@@ -9,7 +9,7 @@ from southwell.core.solve import mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import hexahedra
 from southwell.references.solid.materials import Material
-from southwell.references.solid.mesh import Bricks, blade, clamped
+from southwell.references.solid.mesh import Bricks, clamped_section, straight_bricks
 from southwell.tests.support.solid_sections import clamped_free_to_contract
 from southwell.tests.support.solids import (
     HUB,
@@ -34,7 +34,7 @@ def small() -> hexahedra.Solid:
 def test_mass_and_centre_of_a_tapered_rectangle() -> None:
     """∫ρ c t dx and ∫ρ c t x dx for linear chord and thickness: exact for a trilinear mesh."""
     x = np.linspace(1.0, 3.0, 4)
-    s = hexahedra.solid(blade(x, 0.5 - 0.1 * (x - 1), 0.2 - 0.05 * (x - 1), across=(2, 2)), STEEL)
+    s = hexahedra.solid(straight_bricks(x, 0.5 - 0.1 * (x - 1), 0.2 - 0.05 * (x - 1), across=(2, 2)), STEEL)
     area = np.polynomial.Polynomial([0.6, -0.1]) * np.polynomial.Polynomial([0.25, -0.05])
     m = hexahedra.mass(s).sum(axis=1)
     for power in (0, 1):
@@ -71,7 +71,7 @@ def test_tangent_is_the_derivative_of_the_internal_force() -> None:
 
 def test_uniform_tension_on_a_distorted_mesh() -> None:
     """The patch test: u = ε (x, −ν y, −ν z) needs E A ε at the ends and no other forces."""
-    corners = blade(np.linspace(0.0, 1.0, 4), 0.2, 0.1, across=(3, 3)).corners.copy()
+    corners = straight_bricks(np.linspace(0.0, 1.0, 4), 0.2, 0.1, across=(3, 3)).corners.copy()
     corners[1:-1, 1:-1, 1:-1] += 0.01 * np.random.default_rng(2).uniform(-1, 1, size=(2, 2, 2, 3))
     s = hexahedra.solid(Bricks(corners), STEEL)
     u = (1e-6 * s.nodes * np.array([1.0, -STEEL.poisson, -STEEL.poisson])).T.ravel()
@@ -85,8 +85,8 @@ def test_uniform_tension_on_a_distorted_mesh() -> None:
 def test_steady_stretch_of_a_rotating_bar() -> None:
     """u(L) = ρ Ω² (R L²/2 + L³/3)/E with zero Poisson's ratio, at strains of 1e-7."""
     bar, omega, length, hub = Material(2e11, 0.0, 7800.0), 1.0, 2.0, 0.5
-    s = hexahedra.solid(blade(np.linspace(hub, hub + length, 5), 0.1, 0.1, across=(1, 1)), bar)
-    u, _ = hexahedra.steady_displacements(s, omega, hexahedra.motions(s, clamped(hub)))
+    s = hexahedra.solid(straight_bricks(np.linspace(hub, hub + length, 5), 0.1, 0.1, across=(1, 1)), bar)
+    u, _ = hexahedra.steady_displacements(s, omega, hexahedra.motions(s, clamped_section(hub)))
     tip = u[: len(s.nodes)][s.nodes[:, 0] == hub + length]
     exact = 7800.0 * omega**2 * (hub * length**2 / 2 + length**3 / 3) / 2e11
     np.testing.assert_allclose(tip, exact, rtol=1e-5)
@@ -115,7 +115,7 @@ def test_coriolis_forces() -> None:
     """
     material, side, length = Material(1e9, 0.0, 1000.0), np.sqrt(12.0) / 70.0, 1.0
     omega = 2.0 * np.sqrt(1e9 * side**2 / 12 / 1000.0)
-    bricks = blade(np.linspace(0.0, length, 31), side, side, across=(2, 2))
+    bricks = straight_bricks(np.linspace(0.0, length, 31), side, side, across=(2, 2))
     beam = square_beam(material, side, length, 0.0)
     drop = {}
     for coriolis in (True, False):
@@ -133,8 +133,8 @@ def test_coriolis_forces() -> None:
 def test_errors_name_what_is_wrong() -> None:
     bricks = twisted(2, (2, 2))
     with pytest.raises(CodeError, match="clamp: fixes 0 displacements"):
-        hexahedra.modes(bricks, STEEL, 0.0, 2, clamped(ROOT + 0.1))
+        hexahedra.modes(bricks, STEEL, 0.0, 2, clamped_section(ROOT + 0.1))
     with pytest.raises(CodeError, match=r"mesh: no layer of nodes at the station x = 0\.35 m"):
-        hexahedra.modes(bricks, STEEL, 0.0, 2, clamped(ROOT))
+        hexahedra.modes(bricks, STEEL, 0.0, 2, clamped_section(ROOT))
     with pytest.raises(CodeError, match=r"no (stable )?steady state"):
-        hexahedra.modes(bricks, STEEL, 1e5, 2, clamped(ROOT))
+        hexahedra.modes(bricks, STEEL, 1e5, 2, clamped_section(ROOT))

@@ -12,7 +12,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.results import Run
 from southwell.core.condense.compressed import chain_modes, mesh_from_segments
 from southwell.references.solid import calculix, hexahedra
-from southwell.references.solid.mesh import Bricks, blade, clamped
+from southwell.references.solid.mesh import Bricks, clamped_section, straight_bricks
 from southwell.reports.cli import app as cli
 from southwell.reports.condense import page as condense_page
 from southwell.reports.shared.certain import certain, relative
@@ -98,7 +98,7 @@ def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> Non
 def test_a_sections_mass_is_shared_by_what_lies_on_either_side(tmp_path: Path) -> None:
     """A prism cut between layers of 0.1 and 0.3 m: each segment has its own length's mass, and its centre in its middle."""
     ends = [0.0, 0.1, 0.4]
-    exported(tmp_path, bricks=blade(np.array(ends), 0.2, 0.1, across=(1, 1)))
+    exported(tmp_path, bricks=straight_bricks(np.array(ends), 0.2, 0.1, across=(1, 1)))
     model = condensing.condense(toml(tmp_path, WHOLE.replace(str(STATIONS), str(ends)))).blade
     masses, centres, _ = zip(*(condensed.body(s) for s in model.segments), strict=True)
     np.testing.assert_allclose(masses, STEEL.density * 0.02 * np.diff(ends), rtol=1e-10)
@@ -237,7 +237,7 @@ def test_matrices_that_calculix_stored(tmp_path: Path) -> None:
     text += f"sections = {[round(ROOT + SPAN * k / 10, 6) for k in range(11)]}\n"
     with pytest.raises(CaseError, match=r"smallest weight -.* \(lumped mass\)"):
         condensing.condense(toml(tmp_path, text))
-    whole = calculix.modes(mesh, STEEL, 0.0, 5, clamped(ROOT)).frequencies
+    whole = calculix.modes(mesh, STEEL, 0.0, 5, clamped_section(ROOT)).frequencies
     for weights in ("even", "mass matrix"):
         model = condensing.condense(toml(tmp_path, f'{text}weights = "{weights}"\n')).blade
         np.testing.assert_allclose(condensed.modes(model, 0.0, 5).frequencies[:4], whole[:4], rtol=5e-3)
