@@ -1,4 +1,4 @@
-# make verify | make test | make test-slow | make coverage | make lint (style, types) | make bench | make readme | make docs | make clean
+# make verify | make test | make test-slow | make test-all (both) | make coverage | make lint (style, types) | make bench | make readme | make docs | make clean
 # Python 3.11 or later with its headers and a C++ compiler are needed; everything else goes into .venv.
 
 PYTHON ?= $(shell for p in python3 python3.14 python3.13 python3.12 python3.11; do \
@@ -15,21 +15,26 @@ export OPENBLAS_NUM_THREADS := 1
 # cached bytecode spares each of the many processes a compilation of the package
 unexport PYTHONDONTWRITEBYTECODE
 
-.PHONY: verify test test-slow coverage lint style types bench readme docs clean
+.PHONY: verify test test-slow test-all coverage lint style types bench readme docs clean
 
 verify: $(INSTALLED)
 	$(BIN)/southwell verify --out reports/out; status=$$?; $(BIN)/southwell pages reports/out && exit $$status
 
-# loadfile: all tests of a file run in one process, because they share fixtures
+# loadfile: all tests of a file run in one process, because they share fixtures; in the order of tests/conftest.py
+IN_PARALLEL := -n 2 --dist loadfile --no-loadscope-reorder
+
 test: $(INSTALLED)
-	$(BIN)/pytest -n 2 --dist loadfile -m "not slow"
+	$(BIN)/pytest $(IN_PARALLEL) -m "not slow"
 
 test-slow: $(INSTALLED)
-	$(BIN)/pytest -n 2 --dist loadfile -m slow
+	$(BIN)/pytest $(IN_PARALLEL) -m slow
+
+test-all: $(INSTALLED)
+	$(BIN)/pytest $(IN_PARALLEL)
 
 coverage: $(INSTALLED)
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
-	$(BIN)/pytest -n 2 --dist loadfile -m "not slow" --cov=southwell --cov-report=term:skip-covered
+	$(BIN)/pytest $(IN_PARALLEL) -m "not slow" --cov=southwell --cov-report=term:skip-covered
 
 lint: style types
 

@@ -1,6 +1,7 @@
 """What runs when, and where: property tests with the same examples in continuous integration and others every night."""
 
 import os
+from collections import Counter
 from collections.abc import Iterator
 
 import pytest
@@ -18,7 +19,10 @@ settings.load_profile(os.environ.get("SOUTHWELL_HYPOTHESIS", "ci"))
 
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Mark the property tests; leave out what is for the night, unless it is asked for."""
+    """Mark the property tests; leave out what is for the night, unless it is asked for; begin with files of slow tests.
+
+    A long file that is begun last would leave the other processor idle.
+    """
     night = "nightly" in str(config.getoption("-m"))
     for item in items:
         if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
@@ -27,6 +31,8 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     if left:
         config.hook.pytest_deselected(items=left)
         items[:] = [item for item in items if item not in set(left)]
+    slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
+    items.sort(key=lambda item: -slow[item.path])
 
 
 @pytest.fixture(scope="session", autouse=True)

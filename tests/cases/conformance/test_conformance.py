@@ -19,8 +19,8 @@ from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, DIGITS, BladeAdapter, CodeError, Independence
 from southwell.tests.support.codes import BLADE_CODES
 
-LONG = ("pinocchio", "scikit-fem-reissner", "scikit-fem-solid")
-"""Codes whose checks take half a minute; every push has them in the matrix."""
+LONG = ("exudyn-tree", "pinocchio", "scikit-fem-reissner", "scikit-fem-solid")
+"""Codes whose checks take 15 s and more; every push has them in the matrix."""
 
 
 @pytest.mark.slow

@@ -40,9 +40,6 @@ time_limit = 20
 
 BAD = {
     "import-exit_0": "fail",
-    "import-sys_exit": "fail",
-    "version-raises": "fail",
-    "unsupported-exit_0": "fail",
     "unsupported-two_lines": "not applicable",
     "solve-patches_json": "fail",
 }
@@ -92,15 +89,6 @@ def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) 
         good = of(found, "southwell-equation")
         assert [(c.value, c.verdict) for c in good] == [(c.value, c.verdict) for c in alone]
         assert summary.status(found) == (1 if verdict == "fail" else 0)
-
-
-@pytest.mark.slow
-def test_an_exit_at_import_is_no_success(case: Case, folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    code = written("import-exit_0", folder)
-    with pytest.raises(SystemExit) as ended:
-        cli.main(["verify", case.path, "--codes", f"yoo-shin,{code}", "--faults", "none", "--workers", "1"])
-    assert ended.value.code == 1
-    assert "exit status 0" in capsys.readouterr().out
 
 
 def test_an_entry_point_that_exits_costs_its_own_cells(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:

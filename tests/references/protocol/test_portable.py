@@ -72,7 +72,7 @@ def test_a_spawned_process_is_limited(name: str, tmp_path: Path, monkeypatch: py
     assert reason in ended.reason
 
 
-@pytest.mark.slow
+@pytest.mark.nightly
 def test_every_command_imports_without_the_modules_that_windows_lacks() -> None:
     targets = sorted({target.partition(":")[0] for _, _, target, _ in COMMANDS})
     program = (
@@ -87,8 +87,13 @@ def test_every_command_imports_without_the_modules_that_windows_lacks() -> None:
     "line",
     [
         "modes park-cantilever --rpm 0 --modes 2",
-        "campbell park-cantilever --rpm 0:30:30 --modes 2 --elements 8 -o out",
-        "verify beam.toml --codes exact-beam --faults none --out out",
+        *(
+            pytest.param(line, marks=pytest.mark.nightly)
+            for line in (
+                "campbell park-cantilever --rpm 0:30:30 --modes 2 --elements 8 -o out",
+                "verify beam.toml --codes exact-beam --faults none --out out",
+            )
+        ),
     ],
 )
 def test_commands_work_with_spawn_alone(line: str, tmp_path: Path) -> None:

@@ -21,12 +21,12 @@ def shell(line: str, **variables: str) -> subprocess.CompletedProcess[str]:
 @pytest.mark.parametrize(
     ("line", "variables", "status", "errors"),
     [
-        ("southwell codes", {"PYTHONIOENCODING": "ascii"}, 0, 0),
-        ("southwell codes >&-", {}, 0, 0),
-        ("southwell codes >&- 2>&-", {}, 0, 0),
+        ("southwell --help", {"PYTHONIOENCODING": "ascii"}, 0, 0),
+        ("southwell --help >&-", {}, 0, 0),
+        ("southwell --help >&- 2>&-", {}, 0, 0),
         ("southwell codes | true; exit ${PIPESTATUS[0]}", {}, 0, 0),
         ("southwell report /nowhere | true; exit ${PIPESTATUS[0]}", {}, 2, 1),
-        ("southwell codes > /dev/full", {}, 2, 1),
+        ("southwell --help > /dev/full", {}, 2, 1),
     ],
 )
 def test_whatever_becomes_of_the_output(line: str, variables: dict[str, str], status: int, errors: int) -> None:

@@ -36,7 +36,7 @@ PAGES = sorted(page.name for page in DOCS.glob("*.md"))
 TESTED_BY = {"add-your-code.md": "test_add_your_code.py", "pytest-plugin.md": "test_pytest_plugin.py"}
 """Pages whose examples are followed by tests of their own: the second's are parts of tests/example_project."""
 
-NIGHTLY = {"add-a-case.md", "index.md", "studies.md", "your-blade.md"}
+NIGHTLY = {"add-a-case.md", "index.md", "machine.md", "mechanisms.md", "studies.md", "your-blade.md"}
 
 
 def blocks(page: str, language: str) -> list[str]:
