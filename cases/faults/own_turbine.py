@@ -6,7 +6,6 @@ the code, which core must contradict. Mistakes of reading must differ from the s
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -118,8 +117,8 @@ READER: tuple[tuple[str, str, Callable[[Turbine], Turbine]], ...] = (
 
 def reading(subject: TurbineSubject) -> list[Control]:
     """Run mistakes of reading on OpenFAST's files of a turbine and of its blade; empty for other files."""
-    path = Path(subject.path)
-    if not subject.read_twice:
+    path = subject.deck
+    if path is None:
         return []
     blade = readers.reading(path, subject.mount)
     file = readers.BladeFile(path, blade.blade, blade.source, subject.mount)

@@ -76,9 +76,9 @@ class TurbineSubject(NotABlade):
         return Path(data.__file__ or "").parent not in Path(self.path).parents
 
     @property
-    def read_twice(self) -> bool:
-        """Whether there is a second reader of its file."""
-        return Path(self.path).suffix.lower() == ".fst"
+    def deck(self) -> Path | None:
+        """OpenFAST's primary file, which there is a second reader of; None for other files."""
+        return next((file for file in self.source.files if file.suffix.lower() == ".fst"), None)
 
     @property
     def cells(self) -> int:
@@ -145,8 +145,8 @@ class TurbineSubject(NotABlade):
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``; a second reading of OpenFAST's files."""
-        path = Path(self.path)
-        if not self.read_twice:
+        path = self.deck
+        if path is None:
             return NOT_CHECKED
         blade = readers.reading(path, self.mount)
         file = readers.BladeFile(path, blade.blade, blade.source, self.mount)

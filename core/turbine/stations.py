@@ -66,6 +66,8 @@ def weights(turbine: Turbine) -> Array:
     """(21 (1 + N), 4, 4) mass, kg, and moment of inertia about x, kg m², that belongs to each station."""
     tower, blade = _lumps(turbine.tower), _lumps(turbine.blade)
     tower[-1] += [*[turbine.nacelle[0, 0]] * 3, turbine.nacelle[3, 3]]
+    if turbine.support.mass is not None:
+        tower[0] += np.diagonal(turbine.support.mass)[:4]
     return np.array([np.diag(row) for row in (*tower, *np.tile(blade, (turbine.blades, 1)))])
 
 

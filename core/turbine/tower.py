@@ -1,7 +1,8 @@
 """A tower on its foundation: a beam that stands, with a body at its top, springs at its base and along it, and its weight.
 
-Axes are the ground's: x up, z downwind, y = z × x. The base's stiffness becomes joints in series (``branches.springs``). Other
-springs add to the stiffness of the element at which they act; they are unloaded in the balance under weight.
+Axes are the ground's: x up, z downwind, y = z × x. The base moves on joints along and about them. Springs add to the stiffness
+of the link at whose end they act, in the ground's axes, about the state of rest: the weight does not displace the base, as a
+floater is in balance where its stiffness is stated, and the force that carries the weight stays vertical.
 """
 
 from dataclasses import dataclass, replace
@@ -12,7 +13,7 @@ from numpy.typing import NDArray
 from .. import participation
 from ..blade import Blade
 from ..effects import ALL_EFFECTS
-from ..element.branches import attached, hub, springs
+from ..element.branches import attached, hub
 from ..element.discretize import discretize, divide
 from ..element.mesh import Mesh
 from ..modes import Modes
@@ -21,7 +22,7 @@ from ..spectrum.mesh_solver import balance
 from ..steady.blade_state import Steady
 from ..threads import one_thread
 from ..tree.mode_shapes import mode_shapes, sampling_matrix
-from ..tree.pencil import TreePencil, on_nodes
+from ..tree.pencil import TreePencil, linearize, on_nodes
 
 Array = NDArray[np.float64]
 
@@ -50,16 +51,30 @@ class Support:
             positive definite apart from directions with ``inf`` on the diagonal, which are clamped. None clamps all.
         springs: heights above the base, m, and the (6, 6) stiffness that acts there, such as that of guy wires.
         soil: (n, 2) heights, m, ascending, and the stiffness against lateral motion per length, N/m²; linear in between.
+        mass: (6, 6) inertia that moves with the base, in the same order, kg, kg m, kg m²: a foundation, or a floater with the
+            added mass of the water. It has no weight, which is part of ``base``: buoyancy and moorings carry it.
     """
 
     base: Array | None = None
     springs: tuple[tuple[float, Array], ...] = ()
     soil: Array | None = None
+    mass: Array | None = None
 
     @property
     def rigid(self) -> bool:
         """Whether there is only rigid ground at the base."""
         return self.base is None and not self.springs and self.soil is None
+
+    @property
+    def free(self) -> NDArray[np.intp]:
+        """The directions in which the base moves."""
+        none = np.zeros(0, dtype=np.intp)
+        return none if self.base is None else np.flatnonzero(np.isfinite(np.diagonal(self.base)))
+
+    @property
+    def finite(self) -> Array:
+        """(6, 6) the stiffness of the base, 0 in directions that are clamped."""
+        return np.zeros((6, 6)) if self.base is None else np.where(np.isfinite(self.base), self.base, 0.0)
 
 
 @dataclass(frozen=True)
@@ -116,10 +131,9 @@ def tower_modes(tower: Tower, count: int = 6) -> TowerModes:
 
 def _solved(tower: Tower, elements: int, count: int) -> Modes:
     mesh = tower_mesh(tower.beam, tower.support, elements)
-    state = balance(mesh, 0.0, np.array([-tower.gravity, 0.0, 0.0]), ALL_EFFECTS)
-    pencil = held(tower.beam, tower.support, elements, state).pencil
-    lowest = lanczos(pencil, count)
-    shapes = mode_shapes(mesh, state.shape, on_nodes(pencil, lowest.vectors))
+    state = standing(mesh, tower, elements)
+    lowest = lanczos(state.pencil, count)
+    shapes = mode_shapes(mesh, state.shape, on_nodes(state.pencil, lowest.vectors))
     return Modes(0.0, lowest.frequencies, shapes, mesh.elements)
 
 
@@ -137,6 +151,10 @@ def check(length: float, support: Support) -> None:
     """
     if support.base is not None:
         checked("base", support.base, True)
+    if support.mass is not None:
+        checked("mass", support.mass, False)
+        if not len(support.free):
+            raise ValueError("mass: the base does not move: give its stiffness too")
     heights = np.array([height for height, _ in support.springs])
     for _, stiffness in support.springs:
         checked("spring", stiffness, False)
@@ -151,7 +169,7 @@ def check(length: float, support: Support) -> None:
 
 
 def tower_mesh(beam: Blade, support: Support, elements: int, at: Array | None = None) -> Mesh:
-    """The tower's elements on the joints of its base; ``at`` are the heights of its sample points, see ``discretize``.
+    """The tower's elements on the joints of its base, without springs; ``at``: heights of sample points, see ``discretize``.
 
     Raises:
         ValueError: a stiffness is not symmetric or not positive, or a spring is not on the tower.
@@ -160,15 +178,31 @@ def tower_mesh(beam: Blade, support: Support, elements: int, at: Array | None = 
     mesh = discretize(beam, _ends(beam, support, elements), at=at)
     if support.base is None:
         return mesh
-    return attached(hub(mesh, np.eye(4)), 0, mesh, np.eye(4), stiffness=checked("base", support.base, True))
+    checked("base", support.base, True)
+    stiffness = np.where(np.isfinite(np.diagonal(support.base)), 0.0, np.inf)
+    return attached(hub(mesh, np.eye(4)), 0, mesh, np.eye(4), stiffness=stiffness)
 
 
-def held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady:
-    """The steady state of a tower with the springs along it in its stiffness, see ``links``."""
-    if support.soil is None and not support.springs:
+def standing(mesh: Mesh, tower: Tower, elements: int) -> Steady:
+    """The tower under the weight of all that is on its mesh, held by its support, which the weight does not displace.
+
+    Raises:
+        SteadyStateError: the tower does not carry the weight.
+    """
+    fall, foot = np.array([-tower.gravity, 0.0, 0.0]), len(tower.support.free)
+    fixed = tuple(replace(joint, screw=np.zeros(6)) for joint in mesh.joints[:foot])
+    state = balance(replace(mesh, joints=(*fixed, *mesh.joints[foot:])), 0.0, fall, ALL_EFFECTS)
+    if foot:
+        state = replace(state, pencil=linearize(mesh, state.shape, 0.0, fall))
+    return _held(tower.beam, tower.support, elements, state)
+
+
+def _held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady:
+    """The steady state of a tower with springs along it in its stiffness and the base's inertia in its mass, see ``links``."""
+    if support.rigid:
         return state
     p = state.pencil
-    K = p.K.copy()
+    M, K = p.M.copy(), p.K.copy()
     if support.soil is not None:
         heights, weights = _gauss(_ends(beam, support, elements), support.soil)
         mesh = tower_mesh(beam, support, elements, heights)
@@ -176,17 +210,27 @@ def held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady:
         for link, k, moved in zip(mesh.samples.element.tolist(), weights.tolist(), sampled, strict=True):
             J = _of_link(p, link, moved)
             K[link] += k * J.T @ J
-    offset = 0 if support.base is None else len(springs(support.base)[1]) or 1
+    offset = 0 if support.base is None else len(support.free) or 1
     ends = _ends(beam, support, elements)
     for height, stiffness in support.springs:
         link = int(np.abs(ends - height).argmin()) + offset - 1
         if link < 0:
             continue  # at a clamped base
-        moved = np.zeros((6, 12))
-        moved[:3, 6:9] = moved[3:, 9:] = state.shape.nodes[link + 1, :3, :3]
-        J = _of_link(p, link, moved)
+        J = _of_end(p, state, link)
         K[link] += J.T @ checked("spring", stiffness, False) @ J
-    return replace(state, pencil=TreePencil(p.residual, p.M, p.C, K, p.links))
+    if support.base is not None and len(support.free):
+        J = _of_end(p, state, offset - 1)
+        K[offset - 1] += J.T @ support.finite @ J
+        if support.mass is not None:
+            M[offset - 1] += J.T @ checked("mass", support.mass, False) @ J
+    return replace(state, pencil=TreePencil(p.residual, M, p.C, K, p.links))
+
+
+def _of_end(p: TreePencil, state: Steady, link: int) -> Array:
+    """The motion (6, d) of a link's end, in the ground's axes."""
+    moved = np.zeros((6, 12))
+    moved[:3, 6:9] = moved[3:, 9:] = state.shape.nodes[link + 1, :3, :3]
+    return _of_link(p, link, moved)
 
 
 def _of_link(p: TreePencil, link: int, moved: Array) -> Array:

@@ -28,12 +28,12 @@ from ..space.inertia import transformed
 from ..spectrum.mesh_solver import balance
 from ..steady.blade_state import Steady
 from ..threads import one_thread
-from ..tree.links import Links
+from ..tree.links import Links, twists
 from ..tree.pencil import Shape
 from . import component
 from .assumed import Assumed, motions
 from .component import Component
-from .tower import Support, held, tower_mesh
+from .tower import Support, Tower, standing, tower_mesh
 
 Array = NDArray[np.float64]
 
@@ -181,6 +181,20 @@ class Machine:
         rotation = self.tower.vectors.reshape(self.tower.size, n, self.tower.vectors.shape[1] // n)[:, link, 3]
         return self.turbine.yaw * np.abs(rotation @ motion) ** 2
 
+    def base_energy(self, motion: NDArray[np.complex128]) -> Array:
+        """(6, m) twice the energy of the base's stiffness in motions (t, m) of the tower, by direction; 0 if it is clamped."""
+        support = self.turbine.support
+        foot = len(support.free)
+        if not foot:
+            return np.zeros((6, motion.shape[1]))
+        axes = self.tower_state.shape.nodes[foot, :3, :3]
+        own = twists(self.tower_state.pencil.links, self.tower.vectors)[:, foot - 1, :6].reshape(-1, 2, 3)
+        moved = (own @ axes.T).reshape(-1, 6).T @ motion
+        K = support.finite
+        total = np.einsum("im,ij,jm->m", moved.conj(), K, moved).real
+        parts = np.diagonal(K)[:, None] * np.abs(moved) ** 2
+        return parts * (total / np.maximum(parts.sum(0), np.finfo(float).tiny))
+
 
 def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Assumed | None = None) -> Machine:
     """Mesh a turbine, and solve its tower under the weight of all that it carries.
@@ -204,8 +218,7 @@ def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Ass
         blade_mesh = discretize(turbine.blade, how.blade_elements)
         rotor = np.ascontiguousarray(transformed(rigid_rotor(turbine, blade_mesh), turbine.shaft))
         mesh = _tower(turbine, how, turbine.nacelle + rotor)
-        state = balance(mesh, 0.0, np.array([-turbine.gravity, 0.0, 0.0]), ALL_EFFECTS)
-        state = held(turbine.tower, turbine.support, how.tower_elements, state)
+        state = standing(mesh, Tower(turbine.tower, turbine.support, turbine.gravity), how.tower_elements)
         tower_motions, blade_motions = motions(assumed, (turbine.tower, mesh), (turbine.blade, blade_mesh))
         if tower_motions is None:
             tower = component.reduced(mesh, state, how.tower_modes, by_tip=True)

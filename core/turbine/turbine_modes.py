@@ -38,6 +38,9 @@ RIGID = 1e-6
 
 BLADE_NAMES = ("flap", "edge", "torsion", "axial")
 
+PLATFORM = ("heave", "sway", "surge", "yaw", "pitch", "roll")
+"""Names of the base's motions along and about x (up), y and z (downwind)."""
+
 TURNS = "rotor turns freely"
 SHAFT = "drivetrain torsion"
 
@@ -135,7 +138,7 @@ def _turned(a: Assembled, label: str, x: Complex, motions: NDArray[np.intp]) -> 
 
 def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDArray[np.intp]]]:
     """Names of the groups, and the group of each elastic motion of ``tower`` and ``blade``."""
-    out: list[str] = ["yaw", SHAFT]
+    out: list[str] = ["yaw", SHAFT, *(f"platform {name}" for name in PLATFORM)]
     numbers: dict[str, NDArray[np.intp]] = {}
     parts = (
         ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], NAMES),
@@ -147,8 +150,12 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
         fractions = participation.participation(modes, beam)
         families = [words[int(row.argmax())] for row in fractions]
         seen: dict[str, int] = {}
-        group = []
-        for family in families:
+        group: list[int] = []
+        base = made.base_energy(np.eye(reduced.size, dtype=complex)) if part == "tower" else np.zeros((6, reduced.size))
+        for k, family in enumerate(families):
+            if base[:, k].sum() > 0.5 * reduced.frequencies[k] ** 2:
+                group.append(out.index(f"platform {PLATFORM[int(base[:, k].argmax())]}"))
+                continue
             seen[family] = seen.get(family, 0) + 1
             prefix = "tower " if part == "tower" else ""
             out.append(f"{ordinal(seen[family])} {prefix}{family}")
@@ -165,8 +172,11 @@ def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, 
     tower = a.tower.frequencies[:, None] ** 2 * squared[:t]
     total = tower.sum(0)
     yawing = np.minimum(made.yaw_energy(vectors[:t]), total)
-    np.add.at(out.T, numbers["tower"], tower * (1.0 - yawing / np.where(total > 0, total, 1.0)))
+    base = made.base_energy(vectors[:t])
+    springs = np.minimum(yawing + base.sum(0), total)
+    np.add.at(out.T, numbers["tower"], tower * (1.0 - springs / np.where(total > 0, total, 1.0)))
     out[:, 0] = yawing
+    out[:, 2:8] = base.T
     if a.shaft and np.isfinite(made.turbine.drivetrain.stiffness):
         turned = vectors[a.shaft[0]] - (vectors[a.shaft[1]] if len(a.shaft) > 1 else 0.0)
         out[:, 1] = made.turbine.drivetrain.stiffness * np.abs(turned) ** 2

@@ -18,20 +18,22 @@ STEPS = 50
 def standing(tree: TurbineTree) -> tuple[Array, Array]:
     """Coordinates (t,) of the tower under the weight of all that it carries, and the stiffness (t, t) of that weight.
 
-    Newton's method on the gradient of the potential Σ m g h; the rotor is rigid and carried by the nacelle.
+    Newton's method on the gradient of the potential Σ m g h; the rotor is rigid and carried by the nacelle. The weight does not
+    displace the base.
 
     Raises:
         CodeError: Newton's method does not converge.
     """
-    t, gravity = tree.tower, tree.turbine.gravity
+    t, gravity = tree.tower[tree.foot :], tree.turbine.gravity
+    own = np.ix_(t, t)
     q = np.zeros(len(tree.strain))
-    elastic = tree.stiffness[np.ix_(t, t)]
+    elastic = tree.stiffness[own]
     for _ in range(STEPS):
         force, stiffness = _weight(tree, q)
-        step = np.linalg.solve(elastic + gravity * stiffness, -(elastic @ q[t] + gravity * force))
+        step = np.linalg.solve(elastic + gravity * stiffness[own], -(elastic @ q[t] + gravity * force[t]))
         q[t] += step
         if np.abs(step).max() < 1e-13:
-            return q[t], gravity * _weight(tree, q)[1]
+            return q[tree.tower], gravity * _weight(tree, q)[1]
     raise CodeError("the tower finds no balance under the weight that it carries: check its stiffness")
 
 

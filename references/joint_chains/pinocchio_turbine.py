@@ -219,12 +219,12 @@ class _Links:
 def _standing(tree: TurbineTree) -> tuple[Array, Array]:
     """Coordinates (t,) of the tower under the weight of all that it carries, and the stiffness (t, t) of that weight.
 
-    The rotor is rigid.
+    The rotor is rigid, and the weight does not displace the base.
 
     Raises:
         CodeError: Newton's method does not converge.
     """
-    t, links = tree.tower, np.arange(tree.spin + 1)
+    t, links = tree.tower[tree.foot :], np.arange(tree.spin + 1)
     loaded = _Links(tree, links, [*tree.bodies[: tree.spin], tree.rotor], tree.turbine.gravity)
     elastic = tree.stiffness[np.ix_(t, t)]
     q = np.zeros(len(links))
@@ -234,7 +234,7 @@ def _standing(tree: TurbineTree) -> tuple[Array, Array]:
         step = np.linalg.solve(elastic + own, -(elastic @ q[t] + gradient[t]))
         q[t] += step
         if np.abs(step).max() < 1e-13:
-            return q[t], loaded.weight(q)[1][np.ix_(t, t)]
+            return q[tree.tower], loaded.weight(q)[1][np.ix_(tree.tower, tree.tower)]
     raise CodeError("the tower finds no balance under the weight that it carries: check its stiffness")
 
 

@@ -61,7 +61,7 @@ def jacobian(tree: TurbineTree, at: Placed, link: int, point: Array) -> Array:
 
 
 def with_generator(tree: TurbineTree, q: Array, M: Array, C: Array, K: Array) -> tuple[Array, Array, Array]:
-    """The equations (n, n) with the generator and the shaft's spring, without the prescribed azimuth.
+    """The equations (n, n) with the base's inertia, the generator and the shaft's spring, without the prescribed azimuth.
 
     A generator that is free behind a shaft's spring has a coordinate of its own, which is the last.
     """
@@ -76,6 +76,9 @@ def with_generator(tree: TurbineTree, q: Array, M: Array, C: Array, K: Array) ->
     rotating[:n] = at.along[tree.spin] @ jacobian(tree, at, tree.nacelle, np.zeros(3))[3:]
     if drive.free:
         rotating[n if own else tree.hub] += drive.gear_ratio
+    if tree.foot and tree.turbine.support.mass is not None:
+        moved = jacobian(tree, at, tree.foot - 1, np.zeros(3))
+        out[0][:n, :n] += moved.T @ tree.turbine.support.mass @ moved
     out[0] += drive.generator * np.outer(rotating, rotating)
     if own:
         out[2][np.ix_([tree.hub, n], [tree.hub, n])] += drive.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -88,8 +91,8 @@ def shapes(tree: TurbineTree, q: Array, x: Complex) -> Complex:
     """(m, 21 (1 + N), 4) motion of the stations of ``core.turbine.stations`` in shapes x (n, m) of the joints, azimuth 0."""
     at, turbine = placed(tree, q), tree.turbine
     tower, blade = tree.chains
-    still = np.zeros((6, x.shape[1]), np.complex128)
-    out = [_along(still, [jacobian(tree, at, int(k), r) @ x for k, r in zip(tower.nodes, tower.reach, strict=True)],
+    foot = jacobian(tree, at, tree.foot - 1, np.zeros(3)) @ x if tree.foot else np.zeros((6, x.shape[1]), np.complex128)
+    out = [_along(foot, [jacobian(tree, at, int(k), r) @ x for k, r in zip(tower.nodes, tower.reach, strict=True)],
                   tower, np.eye(3), turbine.tower.length)]  # fmt: skip
     for k, joints in enumerate(tree.blades):
         turn = rotation(2, np.array(2.0 * np.pi * k / turbine.blades))

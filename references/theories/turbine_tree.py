@@ -7,13 +7,14 @@ reduction is used; the positions of joints are at rest.
 Joints are numbered by strain as in ``core.blade``: 0, 1, 2 slide along x, y, z; 3, 4, 5 turn about them.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ...core.blade import clamped, straight
 from ...core.space.spatial import rotation, skew
+from ...core.turbine.tower import Support
 from ...core.turbine.turbine import Turbine
 
 Array = NDArray[np.float64]
@@ -98,8 +99,8 @@ class Chain:
 def outside(turbine: Turbine) -> str | None:
     """What of a turbine cannot be placed here: a bent, twisted or sprung tower, blades on hinges or with kinks; or None."""
     tower, blade = turbine.tower, turbine.blade
-    if not turbine.support.rigid:
-        return "the tower is held by springs"
+    if turbine.support.springs or turbine.support.soil is not None:
+        return "springs along the tower"
     if not (straight(tower) and clamped(tower)) or tower.twist.any():
         return "the tower is not straight, without twist and clamped"
     if not clamped(blade):
@@ -123,7 +124,8 @@ class TurbineTree:
         nacelle, spin, hub: links; the spin's coordinate is the azimuth.
         blades: (N, b) joints of the blades.
         rotor: hub and undeformed blades in the axes of the spin's link.
-        chains: of tower and blade.
+        chains: of tower, whose first joints are those of its base, and blade.
+        foot: number of joints of the base.
     """
 
     turbine: Turbine
@@ -140,6 +142,7 @@ class TurbineTree:
     blades: Index
     rotor: Body
     chains: tuple[Chain, Chain]
+    foot: int = 0
 
     @property
     def shaft(self) -> tuple[int, ...]:
@@ -149,6 +152,9 @@ class TurbineTree:
 
 def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
     """Place the parts of a turbine."""
+    foot = len(turbine.support.free)
+    if foot:
+        tower = on_springs(tower, turbine.support)
     strain, parent = list(tower.strain), list(range(-1, len(tower.strain) - 1))
     offset, axes = list(tower.offset), list(tower.axes)
     bodies = list(tower.bodies)
@@ -212,6 +218,26 @@ def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
         blades=np.array(joints),
         rotor=joined(own, *whole),
         chains=(tower, blade),
+        foot=foot,
+    )
+
+
+def on_springs(tower: Chain, support: Support) -> Chain:
+    """A tower on joints along and about the ground's axes, with the stiffness of its base."""
+    assert support.base is not None
+    foot = support.free
+    count, size = len(foot), len(foot) + len(tower.strain)
+    stiffness = np.zeros((size, size))
+    stiffness[:count, :count] = support.base[np.ix_(foot, foot)]
+    stiffness[count:, count:] = tower.stiffness
+    return replace(
+        tower,
+        strain=np.concatenate([foot, tower.strain]),
+        stiffness=stiffness,
+        offset=np.concatenate([np.zeros((count, 3)), tower.offset]),
+        axes=np.concatenate([np.tile(np.eye(3), (count, 1, 1)), tower.axes]),
+        bodies=(*[NOTHING] * (count - 1), tower.root, *tower.bodies),
+        nodes=tower.nodes + count,
     )
 
 

@@ -5,8 +5,10 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from southwell import multibody as mb
 from southwell.core.blade import AXIAL, TORSION, Blade
 from southwell.core.turbine.stations import weights
+from southwell.core.turbine.tower import Support
 from southwell.core.turbine.turbine import Drivetrain, Turbine, machine
 from southwell.core.turbine.turbine_modes import TurbineModes, turbine_modes
 from southwell.references.exudyn.turbine import CODE as EXUDYN
@@ -18,10 +20,19 @@ OMEGA, COUNT = 4.0, 8
 
 CODES = (EXUDYN, PINOCCHIO)
 
+
+def floater() -> Support:
+    """A base that moves in five directions, coupled in two."""
+    K = np.diag([np.inf, 2e6, 3e6, 5e7, 8e7, 6e7])
+    K[1, 5] = K[5, 1] = -4e6
+    return Support(K, mass=mb.inertia(2000.0, (1e4, 3e4, 2e4), (-2.0, 0.3, 0.2)))
+
+
 TURBINES = {
     "rigid shaft": small(),
     "locked generator": small(4e5, Drivetrain(2e6, 0.3, 20.0, False)),
     "free generator": small(4e5, Drivetrain(2e6, 0.3, 20.0, True)),
+    "on a floater": replace(small(4e5), support=floater()),
 }
 
 
@@ -45,6 +56,7 @@ def bending_only(beam: Blade) -> Blade:
     [
         ("rigid shaft", EXUDYN),
         ("locked generator", PINOCCHIO),
+        *(("on a floater", code) for code in CODES),
         *(("free generator", code) for code in CODES),
     ],
 )

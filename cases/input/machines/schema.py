@@ -52,6 +52,24 @@ class SupportData(Struct, frozen=True, forbid_unknown_fields=True):
         list[tuple[float, float]], Meta(description="height above the base, m, and lateral stiffness per length, N/m²")
     ] = []
     springs: list[SpringData] = []
+    mass: (
+        Annotated[
+            list[list[float]],
+            Meta(
+                description="6 rows of 6 in the order of stiffness: inertia that moves with the base, as a floater with "
+                "added mass; its weight is part of the stiffness; kg, kg m, kg m²"
+            ),
+        ]
+        | None
+    ) = None
+
+
+class DeckData(Struct, frozen=True, forbid_unknown_fields=True):
+    """A turbine of OpenFAST's files, on a support that these do not describe by a matrix."""
+
+    openfast: Annotated[str, Meta(description="primary file (.fst)")]
+    support: SupportData
+    name: Name | None = None
 
 
 class TowerData(Struct, frozen=True, forbid_unknown_fields=True):

@@ -17,7 +17,7 @@ from ..readers.matrices import BEAMDYN, in_axes
 from ..readers.openfast import elastodyn_tower
 from ..readers.source import Mount, Source
 from ..readers.text import load
-from .schema import HubData, MachineData, NacelleData, RotorData, Three, TowerData
+from .schema import DeckData, HubData, MachineData, NacelleData, RotorData, SupportData, Three, TowerData
 
 Array = NDArray[np.float64]
 
@@ -39,9 +39,24 @@ def holds(path: Path) -> Literal["turbine", "tower"] | None:
         CaseError: it is not TOML.
     """
     content = toml.document(path)
+    if isinstance(content.get("openfast"), str):
+        return "turbine"
     if not isinstance(content.get("tower"), dict):
         return None
     return "turbine" if any(name in content for name in ROTOR) else "tower"
+
+
+def deck(path: Path) -> DeckData | None:
+    """OpenFAST's file and the support that a file names; None if it describes the turbine itself.
+
+    Raises:
+        CaseError: naming the field at fault.
+    """
+    content = toml.document(path)
+    if "openfast" not in content:
+        return None
+    toml.finite(content, str(path))
+    return toml.convert(content, DeckData, str(path))
 
 
 def _data(path: Path) -> MachineData:
@@ -58,10 +73,10 @@ def tower(path: Path) -> tuple[Tower, Source]:
     """
     data = _data(path)
     beam, files = _beam(path, data.name or path.stem, data.tower)
-    support = _support(path, data.tower)
+    held = support(path, "tower.support", data.tower.support, data.tower.height)
     weight = f"gravity {data.gravity:g} m/s²" if data.gravity else "without weight"
-    notes = (*((GROUND,) if support.rigid else ("on the springs of tower.support",)), weight)
-    return Tower(beam, support, data.gravity), Source("Southwell tower", (path, *files), AXES, notes)
+    notes = (*((GROUND,) if held.rigid else ("on the springs of tower.support",)), weight)
+    return Tower(beam, held, data.gravity), Source("Southwell tower", (path, *files), AXES, notes)
 
 
 def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
@@ -83,7 +98,7 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
     name = data.name or path.stem
     beam, files = _beam(path, f"{name}'s tower", data.tower)
     drive = data.drivetrain
-    support = _support(path, data.tower)
+    held = support(path, "tower.support", data.tower.support, data.tower.height)
     made = Turbine(
         name=name,
         tower=beam,
@@ -97,10 +112,10 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
             drive.stiffness or np.inf, drive.generator_inertia, drive.gear_ratio, drive.generator == "free"
         ),
         gravity=data.gravity,
-        support=support,
+        support=held,
     )
     notes = (
-        GROUND if support.rigid else "tower on the springs of tower.support; platform and water are not included",
+        GROUND if held.rigid else "on the springs of tower.support",
         f"gravity {data.gravity:g} m/s² acts on the tower through all that it carries, not on the blades' own motions",
         f"generator {drive.generator}; shaft {f'{drive.stiffness:g} N m/rad' if drive.stiffness else 'rigid'}",
         f"yaw bearing {f'{data.nacelle.yaw_stiffness:g} N m/rad' if data.nacelle.yaw_stiffness else 'locked'}",
@@ -181,31 +196,39 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
     return beam, ()
 
 
-def _support(path: Path, data: TowerData) -> Support:
-    given = data.support
+def support(path: Path, key: str, given: SupportData, height: float) -> Support:
+    """The support in the table ``key`` of a tower of this height, m.
+
+    Raises:
+        CaseError: naming the field at fault.
+    """
     base = None
     if given.stiffness is not None:
-        K = np.array([row for row in given.stiffness if len(row) == 6])
-        if K.shape != (6, 6) or len(given.stiffness) != 6:
-            raise CaseError(f"{path}: tower.support.stiffness: give 6 rows of 6 numbers")
+        K = _six(f"{path}: {key}.stiffness", given.stiffness)
         base = in_axes(K, BEAMDYN)
         clamped = [DIRECTIONS.index(name) for name in given.clamped]
         for k, name in zip(clamped, given.clamped, strict=True):
             if K[k].any() or K[:, k].any():
-                raise CaseError(
-                    f"{path}: tower.support.clamped: {name}: its row of the stiffness is not zero; correct one"
-                )
+                raise CaseError(f"{path}: {key}.clamped: {name}: its row of the stiffness is not zero; correct one")
         turned = np.flatnonzero(np.diagonal(in_axes(np.diag(np.isin(range(6), clamped).astype(float)), BEAMDYN)))
         base[turned, turned] = np.inf
     elif given.clamped:
-        raise CaseError(f"{path}: tower.support.clamped: without a stiffness all directions are clamped: leave it out")
+        raise CaseError(f"{path}: {key}.clamped: without a stiffness all directions are clamped: leave it out")
     springs = tuple((s.height, np.diag([0.0, s.port, s.downwind, 0.0, 0.0, 0.0])) for s in given.springs)
-    support = Support(base, springs, np.array(given.soil) if given.soil else None)
+    mass = None if given.mass is None else in_axes(_six(f"{path}: {key}.mass", given.mass), BEAMDYN)
+    out = Support(base, springs, np.array(given.soil) if given.soil else None, mass)
     try:
-        check(data.height, support)
+        check(height, out)
     except ValueError as error:
-        raise CaseError(f"{path}: tower.support: {error}") from error
-    return support
+        raise CaseError(f"{path}: {key}: {error}") from error
+    return out
+
+
+def _six(where: str, rows: list[list[float]]) -> Array:
+    out = np.array([row for row in rows if len(row) == 6])
+    if out.shape != (6, 6) or len(rows) != 6:
+        raise CaseError(f"{where}: give 6 rows of 6 numbers")
+    return out
 
 
 def _body(mass: float, moments: Three, centre: Three) -> Array:

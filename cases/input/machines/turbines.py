@@ -1,5 +1,6 @@
 """Files of whole turbines: OpenFAST's primary files, and Southwell's TOML files of a turbine."""
 
+from dataclasses import replace
 from pathlib import Path
 
 from .. import files
@@ -8,6 +9,7 @@ from ..readers.openfast import turbine as openfast
 from ..readers.openfast.turbine import TurbineReading
 from ..readers.source import Mount
 from . import turbine_toml
+from .schema import DeckData
 
 
 def is_turbine(path: Path) -> bool:
@@ -28,6 +30,20 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     """
     toml = path.suffix.lower() == ".toml"
     with files.reading(path, deck=not toml):
-        if toml:
-            return TurbineReading(*turbine_toml.turbine(path, mount or Mount()))
-        return openfast.read(path, mount)
+        if not toml:
+            return openfast.read(path, mount)
+        if data := turbine_toml.deck(path):
+            return _supported(path, data, openfast.read(path.parent / data.openfast, mount))
+        return TurbineReading(*turbine_toml.turbine(path, mount or Mount()))
+
+
+def _supported(path: Path, data: DeckData, read: TurbineReading) -> TurbineReading:
+    """A turbine of OpenFAST's files on the support that a TOML file gives."""
+    held = turbine_toml.support(path, "support", data.support, read.turbine.tower.length)
+    mass = "without its inertia" if held.mass is None else "with its inertia"
+    note = f"the tower's base is held by the support of {path.name}, {mass}"
+    notes = tuple(note if line == openfast.GROUND else line for line in read.source.notes)
+    unused = tuple(replace(u, why=note) if u.why == openfast.FLOATER else u for u in read.source.unused)
+    source = replace(read.source, files=(path, *read.source.files), notes=notes, unused=unused)
+    turbine = replace(read.turbine, name=data.name or read.turbine.name, support=held)
+    return replace(read, turbine=turbine, source=source)

@@ -95,6 +95,15 @@ def test_weight_makes_a_body_on_an_elastic_base_tip_over() -> None:
     np.testing.assert_allclose(found, exact, rtol=1e-4)
 
 
+def test_weight_leaves_the_motions_of_a_coupled_base_but_tilts() -> None:
+    """The base carries the weight by a vertical force: K − m g h in the two tilts, whatever K couples."""
+    M, g = mb.inertia(500.0, (900.0, 700.0, 800.0), (LENGTH, 0.0, 0.0)), 9.81
+    K = base() - 500.0 * g * LENGTH * np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0])
+    floater = mb.inertia(2000.0, (3e3, 2e3, 2e3), (-1.0, 0.2, 0.1))
+    found = tower_modes(Tower(rigid(), Support(base=base(), mass=floater), g), 6).frequencies
+    np.testing.assert_allclose(found, np.sqrt(eigh(K, M + floater, eigvals_only=True)), rtol=1e-5)
+
+
 def test_joints_in_series_have_the_stiffness_of_the_base() -> None:
     screws, constants = springs(base())
     np.testing.assert_allclose(np.linalg.inv((screws.T / constants) @ screws), base(), rtol=1e-10, atol=1e-4)
@@ -117,6 +126,8 @@ def test_a_stiff_base_is_a_clamped_one() -> None:
         (Support(base=np.eye(3)), "6 rows"),
         (Support(springs=((25.0, np.eye(6)),)), "20 m high"),
         (Support(soil=np.array([[3.0, 1.0], [2.0, 1.0]])), "ascend"),
+        (Support(mass=np.eye(6)), "does not move"),
+        (Support(base=np.eye(6), mass=-np.eye(6)), "negative in a direction"),
     ],
 )
 def test_a_wrong_support_is_refused(support: Support, said: str) -> None:

@@ -7,10 +7,13 @@ import numpy as np
 import pytest
 from scipy.optimize import brentq
 
+from southwell import multibody as mb
 from southwell.core import solve
 from southwell.core.blade import uniform_blade
 from southwell.core.rotor.multiblade import blades_of, second_order
 from southwell.core.rotor.orbit import orbit_of
+from southwell.core.space import spatial as sp
+from southwell.core.space.inertia import transformed
 from southwell.core.spectrum import eigen
 from southwell.core.turbine import turbine as tb
 from southwell.core.turbine.tower import Support, Tower, ordinal, tower_modes
@@ -127,6 +130,45 @@ def test_a_turbine_on_springs_with_a_stiff_rotor_is_a_tower_on_springs() -> None
     np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=1e-4)
     clamped = turbine_modes(machine(replace(stiff, support=Support()), SMALL), 0.0, 4).frequencies
     assert np.abs(clamped / exact - 1.0).max() > 0.05
+
+
+def test_a_rigid_turbine_on_a_floater_is_a_body_with_a_gyroscope() -> None:
+    """M ẍ + C ẋ + K x = 0 of six coordinates: the moment of a shaft's angular momentum h is −h × θ̇."""
+    turbine = small()
+    rigid = 1e7
+    K = np.diag([1e6, 2e5, 3e5, 5e6, 8e6, 6e6])
+    K[1, 5] = K[5, 1] = -4e5
+    floater = mb.inertia(9000.0, (1e5, 3e5, 2e5), (-4.0, 0.3, 0.7)) + np.diag([500.0, 3e3, 4e3, 0.0, 1e4, 2e4])
+    stiff = replace(
+        turbine,
+        tower=replace(turbine.tower, stiffness=rigid * turbine.tower.stiffness),
+        blade=replace(turbine.blade, stiffness=rigid * turbine.blade.stiffness),
+        support=Support(K, mass=floater),
+    )
+    made = machine(stiff, SMALL)
+    rotor = tb.rigid_rotor(stiff, made.blade_mesh)
+    top = sp.pose(np.eye(3), np.array([turbine.tower.length, 0.0, 0.0]))
+    M = tower_inertia(turbine) + transformed(rigid_nacelle_and_rotor(stiff, rotor), top) + floater
+    speed = 10.0 * OMEGA
+    h = speed * rotor[5, 5] * turbine.shaft[:3, 2]
+    C = np.zeros((6, 6))
+    C[3:, 3:] = -sp.skew(h)
+    exact = eigen.damped(M, C, K, 6).frequencies
+    np.testing.assert_allclose(turbine_modes(made, speed, 6).frequencies, exact, rtol=1e-5)
+    assert {name.split()[0] for name in turbine_modes(made, speed, 6).names} == {"platform"}
+    still = eigen.damped(M, 0.0 * C, K, 6).frequencies
+    assert np.abs(still / exact - 1.0).max() > 5e-3
+
+
+def tower_inertia(turbine: tb.Turbine) -> np.ndarray:
+    """(6, 6) of the uniform tower at its base: a rod along x, and the moments of its sections."""
+    m, length = turbine.tower.mass[0], turbine.tower.length
+    out = m * length
+    out[1, 5] = out[5, 1] = 0.5 * m[0, 0] * length**2
+    out[2, 4] = out[4, 2] = -0.5 * m[0, 0] * length**2
+    out[4, 4] += m[0, 0] * length**3 / 3.0
+    out[5, 5] += m[0, 0] * length**3 / 3.0
+    return out
 
 
 def test_tower_with_a_tip_body() -> None:

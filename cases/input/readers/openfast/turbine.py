@@ -27,6 +27,7 @@ AXES = "nacelle: x downwind, y to port, z up; here x = its z, y = its −y, z = 
 Named = dict[str, tuple[int, str]]
 
 GROUND = "rigid ground: platform and water are not included"
+FLOATER = f"{GROUND}; a TOML file with the keys openfast and support gives them as 6×6"
 DAMPING = {"DTTorDmp": "N m s/rad"}
 PLATFORM = ("PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF")
 NO_TOWER_TORSION = "the tower is rigid in torsion, as in ElastoDyn"
@@ -156,9 +157,9 @@ def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
         out += unused(name, [_number(main, name, 0.0)], unit, main.path, "modes are undamped")
     free = [name for name in PLATFORM if _flag(main, named, name)]
     if free:
-        out += unused(", ".join(free), [1.0] * len(free), "", main.path, GROUND)
+        out += unused(", ".join(free), [1.0] * len(free), "", main.path, FLOATER)
         for name, unit in (("PtfmMass", "kg"), ("PtfmRIner", "kg m²"), ("PtfmPIner", "kg m²"), ("PtfmYIner", "kg m²")):
-            out += unused(name, [_number(main, name, 0.0)], unit, main.path, GROUND)
+            out += unused(name, [_number(main, name, 0.0)], unit, main.path, FLOATER)
     out += unused("NacYaw", [_number(main, "NacYaw", 0.0)], "deg", main.path, "the nacelle faces the wind")
     if _flag(main, named, "Furling"):
         out += unused("Furling", [1.0], "", main.path, "furling is not included")

@@ -92,7 +92,7 @@ def test_a_turbine_in_toml_can_be_verified(tmp_path: Path) -> None:
     assert isinstance(subject, TurbineSubject)
     np.testing.assert_allclose(subject.points, [0.0, np.pi / 3])
     soft = write(tmp_path, TURBINE + "\n[[tower.support.springs]]\nheight = 9.0\ndownwind = 1e5\nport = 0.0\n")
-    assert ExudynTurbine().unsupported_turbine(turbines.read(soft).turbine) == "the tower is held by springs"
+    assert ExudynTurbine().unsupported_turbine(turbines.read(soft).turbine) == "springs along the tower"
 
 
 def test_a_free_generator_and_springs_under_the_tower(tmp_path: Path) -> None:
@@ -106,6 +106,32 @@ def test_a_free_generator_and_springs_under_the_tower(tmp_path: Path) -> None:
     # ours: up, to starboard, downwind
     np.testing.assert_allclose(np.diagonal(found.support.base), [3e9, 1e8, 2e8, 6e9, 5e9, 4e9])
     assert turbine_modes(machine(found), 1.0, 1).frequencies[0] > 0
+
+
+def test_a_deck_on_a_floater(tmp_path: Path) -> None:
+    path = deck(tmp_path)
+    main = tmp_path / "main.dat"
+    main.write_text(main.read_text().replace("False PtfmPDOF", "True PtfmPDOF\n7.0E+06 PtfmMass"))
+    alone = turbines.read(path)
+    assert "rigid ground" in " ".join(alone.source.notes)
+    assert [u.why for u in alone.source.unused if u.name == "PtfmMass"] == [openfast.FLOATER]
+    K, M = (np.diag(row).tolist() for row in ([2e8, 1e8, 3e9, 4e9, 5e9, 6e9], [1e6, 2e6, 3e6, 4e6, 5e6, 6e6]))
+    given = write(tmp_path, f'openfast = "{path.name}"\n[support]\nstiffness = {K}\nmass = {M}\n')
+    reading = turbines.read(given)
+    support = reading.turbine.support
+    assert support.base is not None
+    assert support.mass is not None
+    np.testing.assert_allclose(np.diagonal(support.base), [3e9, 1e8, 2e8, 6e9, 5e9, 4e9])
+    np.testing.assert_allclose(np.diagonal(support.mass), [3e6, 2e6, 1e6, 6e6, 5e6, 4e6])
+    np.testing.assert_array_equal(reading.turbine.nacelle, alone.turbine.nacelle)
+    assert "held by the support of machine.toml, with its inertia" in " ".join(reading.source.notes)
+    assert "rigid ground" not in " ".join([*reading.source.notes, *map(str, reading.source.unused)])
+    (subject,) = subjects(Request((str(given),)), lambda _: None)
+    assert isinstance(subject, TurbineSubject)
+    assert subject.deck == path
+    assert ExudynTurbine().unsupported_turbine(subject.turbine) is None
+    with pytest.raises(CaseError, match=r"support: mass: the base does not move"):
+        turbines.read(write(tmp_path, f'openfast = "{path.name}"\n[support]\nmass = {M}\n'))
 
 
 def test_a_tower_in_toml(tmp_path: Path) -> None:
