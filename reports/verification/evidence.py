@@ -38,6 +38,9 @@ Answer = Literal["Yes", "No", "Open"]
 VERDICT_OF: dict[Answer, Verdict] = {"Yes": "pass", "No": "fail", "Open": "inconclusive"}
 """The verdict whose colour an answer has."""
 
+VISIBLE, CERTAIN = 1e-4, 3.0
+"""Smallest difference of a pass that is stated apart, also as a multiple of its uncertainty."""
+
 SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass", "coarse")
 """Verdicts on a difference from core with the same effects, worst first."""
 
@@ -117,6 +120,25 @@ def first(run: Run) -> list[str]:
         f"Worst independent answer, relative to its target: {_shown(run, far)}.",
         *data,
     ]
+
+
+def beyond_uncertainty(run: Run) -> str:
+    """Codes that pass, but differ by more than ``VISIBLE`` and ``CERTAIN`` times the uncertainty; empty if there are none."""
+    largest: dict[str, Cell] = {}
+    for cell in run.cells:
+        size, uncertain = abs(cell.difference or 0.0), cell.uncertainty
+        if cell.verdict == "pass" and cell.role == "code" and uncertain is not None:
+            shown = max(
+                abs(largest[cell.code].difference or 0.0) if cell.code in largest else VISIBLE, CERTAIN * uncertain
+            )
+            if size > shown:
+                largest[cell.code] = cell
+    listed = "; ".join(f"{summary.plus_minus(cell)} ({where(run, cell)})" for cell in largest.values())
+    return (
+        f"Within the target, but more than discretisation explains, so model or input differs: {listed}."
+        if listed
+        else ""
+    )
 
 
 def measured(run: Run) -> str:

@@ -118,7 +118,13 @@ def headline(run: Run) -> list[str]:
     lines.append(evidence.measured(run))
     if worst := summary.largest(c for c in run.cells if c.verdict == "pass"):
         lines.append(f"Largest difference among passes: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
-    lines += [paper_table.line(run), witnesses.headline(run), *witnesses.missing(run), controls.headline(run)]
+    lines += [
+        evidence.beyond_uncertainty(run),
+        paper_table.line(run),
+        witnesses.headline(run),
+        *witnesses.missing(run),
+        controls.headline(run),
+    ]
     return [line for line in lines if line]
 
 

@@ -156,6 +156,18 @@ def test_a_failure_without_a_number_is_told_first_too() -> None:
     assert evidence.verdict(run) == "Open: 2 answers are missing."
 
 
+def test_a_pass_that_discretisation_does_not_explain_is_stated() -> None:
+    """A rotor speed wrong by 0.043 % passes within 0.1 %; ± is 55 times smaller."""
+    right = samples.cell(code="right", difference=9e-5, uncertainty=1e-6)
+    rough = samples.cell(code="rough", difference=6e-4, uncertainty=3e-4)
+    wrong = samples.cell(code="wrong", difference=3.87e-4, uncertainty=7e-6)
+    less = replace(wrong, difference=2e-4)
+    assert not evidence.beyond_uncertainty(Run((right, rough, replace(wrong, role="table"))))
+    (line,) = [s for s in matrix_report.headline(Run((right, rough, wrong, less))) if "explains" in s]
+    assert "+0.0387 % ± 0.0007 % (beam, wrong, " in line
+    assert line.count("±") == 1
+
+
 def test_each_kind_of_evidence_has_its_worst_difference_and_where_it_is() -> None:
     cells = (
         samples.cell(shares="nothing", difference=1e-4, omega=20.0),
