@@ -82,7 +82,7 @@ DEFECTS = (
         ("calculix",),
         "calculix_substructure",
         "`*SUBSTRUCTURE GENERATE` fixes the nodes that are not retained instead of eliminating them.",
-        "Stored matrices are condensed by core; a stiffness that resists rigid motions is an error.",
+        "Stored matrices are condensed by Southwell's own solver; a stiffness that resists rigid motions is an error.",
     ),
     Defect(
         ("scikit-fem",),

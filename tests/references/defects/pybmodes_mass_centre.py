@@ -5,43 +5,17 @@ rotates by phi, this moment M adds (1 - EI_flap / EI_edge) M phi w'' to the ener
 x phi w' in _element_matrices_batch (fem/element.py). Without it results are right at zero speed, and nearly so if both
 stiffnesses are equal. Expected: Ritz's method below with the energy of finite motion (rotations by Cayley's formula)
 about the steady state from Newton's method, also without the Coriolis force.
-Needs: pybmodes, numpy.
+Needs: pybmodes, numpy, and pybmodes_blade.py beside it.
 """
 
-import tempfile
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 from pybmodes.models import RotatingBlade
+from pybmodes_blade import run
 
 RADIUS, MASS, FLAP, EI, GJ, EA = 10.0, 10.0, 0.001, 1e4, 2e3, 1e8  # m, kg/m, kg m, N m², N m², N
 OFFSET, EDGE = 0.05, 0.02  # m; kg m, about the mass centre
-
-
-def write(folder, rpm, edge_stiffness):
-    """Write an input file and its section table; return its path. A uniform blade, inertia given about the axis."""
-    edge = EDGE + MASS * OFFSET**2
-    row = f"0 0 {MASS} {FLAP} {edge} {EI} {edge_stiffness} {GJ} {EA} {-OFFSET} 0 0"
-    (folder / "sections.dat").write_text(f"blade\n2 n_secs\n\nhead\nunits\n0. {row}\n1. {row}\n")
-    ends = " ".join(f"{end:.4f}" for end in np.linspace(0, 1, 41))
-    lines = ["====", "blade", "", "---- General", "f Echo", "1 beam_type", f"{rpm!r} rot_rpm", "1. rpm_mult"]
-    lines += [
-        f"{RADIUS} radius",
-        "0. hub_rad",
-        "0. precone",
-        "0. bl_thp",
-        "1 hub_conn",
-        "20 modepr",
-        "t Tab",
-        "f mid",
-        "",
-    ]
-    lines += ["---- Tip mass", *["0. -"] * 9, "", "---- Properties", "1 id_mat", "'sections.dat' sec_props_file", ""]
-    lines += ["Scaling", *["1. -"] * 10, "", "---- Elements", "40 nselt", "ends", ends]
-    path = folder / "blade.bmi"
-    path.write_text("\n".join(lines) + "\n")
-    return path
 
 
 class Exact:
@@ -105,8 +79,21 @@ def main():
     print(f"pybmodes {version('pybmodes')}")
     worst = {}
     for rpm, ratio in ((0.0, 16.0), (60.0, 1.0), (60.0, 4.0), (60.0, 16.0)):
-        with tempfile.TemporaryDirectory() as folder:
-            found = RotatingBlade(write(Path(folder), rpm, ratio * EI)).run(8, check_model=False).frequencies[:5]
+        row = (
+            0,
+            0,
+            MASS,
+            FLAP,
+            EDGE + MASS * OFFSET**2,
+            EI,
+            ratio * EI,
+            GJ,
+            EA,
+            -OFFSET,
+            0,
+            0,
+        )  # inertia about the axis
+        found = run(lambda path: RotatingBlade(path).run(8, check_model=False).frequencies[:5], RADIUS, row, rpm)
         expected = Exact(rpm * np.pi / 30, ratio * EI).frequencies()[:5] / (2 * np.pi)
         off = np.abs(found / expected - 1)
         worst[rpm, ratio] = off.max()

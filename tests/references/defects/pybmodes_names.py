@@ -4,53 +4,25 @@ campbell_sweep names a mode by the largest of Σ flap², Σ edge², Σ twist² (
 likewise elastodyn/params.py, _kinetic_participation, called kinetic energy there): displacements in tip radii, twist in
 radians. Kinetic energy weighs displacements by the mass and the twist by the polar inertia. Here mass centres lie 0.1 m
 off.
-Needs: pybmodes, numpy.
+Needs: pybmodes, numpy, and pybmodes_blade.py beside it.
 """
 
-import tempfile
 from importlib.metadata import version
-from pathlib import Path
 
 import numpy as np
 from pybmodes.campbell import campbell_sweep
 from pybmodes.models import RotatingBlade
+from pybmodes_blade import run
 
 RADIUS, MASS, INERTIA = 60.0, 250.0, 300.0  # m, kg/m, kg m
+ROW = (0, 0, MASS, INERTIA / 2, INERTIA / 2, 4e8, 1e9, 5e7, 1e10, 0.1, 0, 0)
 FAMILIES = ("flap", "edge", "torsion")
 
 
-def write(folder):
-    """Write an input file and its section table; return its path. A uniform blade, mass centres 0.1 m off the axis."""
-    row = f"0 0 {MASS} {INERTIA / 2} {INERTIA / 2} 4e8 1e9 5e7 1e10 0.1 0 0"
-    (folder / "sections.dat").write_text(f"blade\n2 n_secs\n\nhead\nunits\n0. {row}\n1. {row}\n")
-    ends = " ".join(f"{end:.4f}" for end in np.linspace(0, 1, 41))
-    lines = ["====", "blade", "", "---- General", "f Echo", "1 beam_type", "0. rot_rpm", "1. rpm_mult"]
-    lines += [
-        f"{RADIUS} radius",
-        "0. hub_rad",
-        "0. precone",
-        "0. bl_thp",
-        "1 hub_conn",
-        "20 modepr",
-        "t Tab",
-        "f mid_tw",
-        "",
-    ]
-    lines += ["---- Tip mass", *["0. -"] * 9, "", "---- Properties", "1 id_mat"]
-    lines += [
-        "'sections.dat' sec_props_file",
-        "",
-        "Scaling",
-        *["1. -"] * 10,
-        "",
-        "---- Elements",
-        "40 nselt",
-        "ends",
-        ends,
-    ]
-    path = folder / "blade.bmi"
-    path.write_text("\n".join(lines) + "\n")
-    return path
+def solve(path):
+    """Modes of an input file, and pyBModes' names of them."""
+    labels = campbell_sweep(path, np.array([0.0, 1.0]), n_blade_modes=6).labels
+    return RotatingBlade(path).run(6, check_model=False), labels
 
 
 def energies(shape):
@@ -64,10 +36,7 @@ def energies(shape):
 def main():
     print(f"pybmodes {version('pybmodes')}")
     misnamed = 0
-    with tempfile.TemporaryDirectory() as folder:
-        path = write(Path(folder))
-        result = RotatingBlade(path).run(6, check_model=False)
-        labels = campbell_sweep(path, np.array([0.0, 1.0]), n_blade_modes=6).labels
+    result, labels = run(solve, RADIUS, ROW)
     for frequency, shape, label in zip(result.frequencies, result.shapes, labels, strict=False):
         share = energies(shape)
         family = FAMILIES[int(share.argmax())]
