@@ -105,13 +105,13 @@ def urgent(run: Run) -> list[str]:
 
 
 def first(run: Run) -> list[str]:
-    """The summary of a run: the answer, and the failures and inconclusive differences.
+    """The summary of a run: the answer, failures and inconclusive differences, and what discretisation does not explain.
 
     If there are none, the second line is the independent answer that is farthest from core relative to its target.
     """
     independent = {(case, w.name) for case in summary.cases(run) for w in witnesses(run, case) if w.kind in INDEPENDENT}
     far = farthest(c for c in run.cells if (c.case, c.code) in independent)
-    data = [line for line in (measured(run),) if line]
+    data = [line for line in (beyond_uncertainty(run), measured(run)) if line]
     if not far or any(c.verdict in summary.BAD for c in run.cells):
         return [answer(run), *properties.lines(run), *urgent(run), *data]
     return [
