@@ -127,27 +127,22 @@ def install(environment: Environment) -> Path:
     return folder
 
 
-def ask(environment: Environment, request: dict[str, Any], timeout: float) -> dict[str, Any]:
-    """Run the environment's module on a request and return its answer.
+def ask(environment: Environment, request: dict[str, Any]) -> dict[str, Any]:
+    """Run the environment's module on a request and return its answer; ``process.Limits`` limits its time and memory.
 
     Raises:
-        CodeError: the environment has not been created, or its process crashed, took longer than ``timeout`` seconds, or
-            reported an error.
+        CodeError: the environment has not been created, or its process crashed or reported an error.
     """
     if environment.version() is None:
         raise CodeError(f"{environment.name} is not installed: {environment.hint}")
     script = Path(__file__).with_name("answer.py")
-    try:
-        done = subprocess.run(
-            [str(environment.python), "-I", str(script), environment.module],
-            input=json.dumps(request),
-            capture_output=True,
-            text=True,
-            timeout=timeout,
-            check=False,
-        )
-    except subprocess.TimeoutExpired:
-        raise CodeError(f"{environment.name}: no answer within {timeout:g} s") from None
+    done = subprocess.run(
+        [str(environment.python), "-I", str(script), environment.module],
+        input=json.dumps(request),
+        capture_output=True,
+        text=True,
+        check=False,
+    )
     if done.returncode or not done.stdout:
         last = (done.stderr.strip().splitlines() or ["no message"])[-1]
         raise CodeError(f"{environment.name}: its process ended with exit status {done.returncode}: {last}")

@@ -39,8 +39,6 @@ POINTS = 4
 MAX_ELEMENTS = 120
 """Largest number of elements: the time grows as its cube, and is a quarter of a minute for this number."""
 
-TIMEOUT = 300.0
-
 STIFFNESSES = ("EA", "EI_y", "EI_z", "GJ")
 
 
@@ -94,7 +92,7 @@ class Frame3DD(BladeAdapter):
         ends = element_ends(blade, elements, elements)
         n = len(ends) - 1
         self.limit(n)
-        answer = ask(FRAME3DD, request(blade, omega, ends, count), TIMEOUT)
+        answer = ask(FRAME3DD, request(blade, omega, ends, count))
         squares, shapes = np.array(answer["frequencies"]) ** 2 - omega**2, np.array(answer["shapes"])
         if not (np.isfinite(squares).all() and (squares > 0).all()):
             raise CodeError(

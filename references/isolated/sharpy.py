@@ -43,8 +43,6 @@ INTERVALS = 12
 JUMP = 1e-4
 """Relative to the length: stations closer than this are the two sides of a jump, with no element between them."""
 
-TIMEOUT = 120.0
-
 
 class Sharpy(BladeAdapter):
     """See the module; coupled, curved, twisted blades with shear, precone, pitch and tip mass."""
@@ -85,7 +83,7 @@ class Sharpy(BladeAdapter):
         n = len(spans)
         self.limit(n)
         s = nodes(spans)
-        answer = ask(SHARPY, request(blade, omega, spans), TIMEOUT)
+        answer = ask(SHARPY, request(blade, omega, spans))
         q = _unpacked(answer["q"])
         M, C, K = (_unpacked(answer[name]).reshape(len(q), -1) for name in "MCK")
         frequencies, vectors = gyroscopic_modes(M, C, K, count)

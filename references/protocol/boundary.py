@@ -64,14 +64,12 @@ class _MechanismModes(Struct, frozen=True, forbid_unknown_fields=True):
     steady: list[float]
     values: _Complex
     shapes: _Complex
-    seconds: Seconds
 
 
 class _TurbineModes(Struct, frozen=True, forbid_unknown_fields=True):
     values: _Complex
     shapes: _Complex
     elements: Elements
-    seconds: Seconds
 
 
 def reply(line: bytes, number: int) -> dict[str, Any]:
@@ -149,7 +147,7 @@ def mechanism_modes(data: Any) -> MechanismModes:
     for name, numbers in (("steady", answer.steady), ("values", values.view(float)), ("shapes", shapes.view(float))):
         _finite(name, numbers)
     _ascending("values, by modulus", np.abs(values) * (1.0 + 1e-9 * np.arange(m)))
-    return MechanismModes(tuple(answer.coordinates), np.array(answer.steady), values, shapes, answer.seconds)
+    return MechanismModes(tuple(answer.coordinates), np.array(answer.steady), values, shapes)
 
 
 def turbine_modes(data: Any, count: int, stations: int) -> TurbineModes:
@@ -166,7 +164,7 @@ def turbine_modes(data: Any, count: int, stations: int) -> TurbineModes:
     for name, numbers in (("values", values.view(float)), ("shapes", shapes.view(float))):
         _finite(name, numbers)
     _ascending("values, by modulus", np.abs(values) * (1.0 + 1e-9 * np.arange(m)))
-    return TurbineModes(values, shapes, answer.elements, answer.seconds)
+    return TurbineModes(values, shapes, answer.elements)
 
 
 def fingerprint(data: Any) -> Fingerprint | None:

@@ -229,14 +229,12 @@ class MechanismModes:
         steady: (k,) their steady values, m or rad.
         values: (m,) eigenvalues λ, 1/s, sorted by modulus: one of each conjugate pair, and the real ones.
         shapes: (m, k) motion of the coordinates in each mode, any scale.
-        seconds: wall time; nan: not measured, as of an answer from the store.
     """
 
     coordinates: tuple[str, ...]
     steady: NDArray[np.float64]
     values: Complex
     shapes: Complex
-    seconds: float = 0.0
 
     def __post_init__(self) -> None:
         m, k = len(self.values), len(self.coordinates)

@@ -30,13 +30,11 @@ class TurbineModes:
             stations of the tower in the ground's axes and of each blade in the hub's axes turned to it; see
             ``core.turbine.stations``.
         elements: refinement: number of elements of a blade.
-        seconds: wall time; nan: not measured, as of an answer from the store.
     """
 
     values: Complex
     shapes: Complex
     elements: int
-    seconds: float = 0.0
 
     def __post_init__(self) -> None:
         m = len(self.values)

@@ -7,6 +7,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import grimp
+import numpy as np
 import pytest
 
 from southwell.references.protocol import registry
@@ -92,6 +93,12 @@ def test_scikit_fem_assembles_the_matrices(name: str, monkeypatch: pytest.Monkey
     monkeypatch.setattr(skfem.BilinearForm, "assemble", refuse)
     with pytest.raises(ZeroDivisionError, match="assembled"):
         code.solve(replace(PARK, name=f"assembled by {name}"), 1.0, code.levels[0], 2)
+
+
+@pytest.mark.parametrize("name", BLADE_CODES)
+def test_refinements_are_within_the_codes_own_limits(name: str) -> None:
+    code = registry.code(name)
+    assert code.levels[-1] <= (code.finest or code.levels[-1]) <= (code.max_elements or np.inf)
 
 
 def test_no_adapter_imports_its_code_until_it_solves() -> None:
