@@ -68,6 +68,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return out
 
 
+@pytest.fixture(scope="module")
+def whole(folder: Path) -> condensed.Condensed:
+    return condensing.condense(toml(folder, WHOLE)).blade
+
+
 def in_house() -> list:
     model = solid_blades.finite_elements(bricks(), STEEL)
     return solid_blades.segments_in_place(model, bricks(), SEGMENTS)
@@ -86,13 +91,13 @@ def assert_same(
 
 
 @pytest.mark.slow
-def test_a_written_out_model_condenses_to_the_same_segments(folder: Path) -> None:
+def test_a_written_out_model_condenses_to_the_same_segments(whole: condensed.Condensed) -> None:
     """The share that each side of a section has in its nodes' mass comes from the mass matrix alone: 5e-4 with this taper."""
-    model = condensing.condense(toml(folder, WHOLE)).blade
-    assert_same(model.segments, in_house(), 1e-7, "undeformed stiffness")
-    assert_same(model.segments, in_house(), 1e-3, "inertia")
-    expected = chain_modes(mesh_from_segments(in_house(), at(ROOT)), SPEED, 5).frequencies
-    np.testing.assert_allclose(condensed.modes(model, SPEED, 5).frequencies, expected, rtol=2e-5)
+    expected = in_house()
+    assert_same(whole.segments, expected, 1e-7, "undeformed stiffness")
+    assert_same(whole.segments, expected, 1e-3, "inertia")
+    expected = chain_modes(mesh_from_segments(expected, at(ROOT)), SPEED, 5).frequencies
+    np.testing.assert_allclose(condensed.modes(whole, SPEED, 5).frequencies, expected, rtol=2e-5)
 
 
 def test_a_sections_mass_is_shared_by_what_lies_on_either_side(tmp_path: Path) -> None:
@@ -114,15 +119,14 @@ def turned_folder(folder: Path) -> None:
 
 
 @pytest.mark.slow
-def test_units_and_axes_make_no_difference(folder: Path, tmp_path: Path) -> None:
+def test_units_and_axes_make_no_difference(whole: condensed.Condensed, tmp_path: Path) -> None:
     """x, y, z of the blade are y, z, x here; the hub's radius is given instead of being where the model lies."""
     turned_folder(tmp_path)
     text = WHOLE.replace("[1, 2, 3]", '"freedoms.csv"').replace(str(STATIONS), str([1e3 * x for x in STATIONS]))
     text += f'units = "mm t s"\nspan = "y"\nrotor = "x"\nhub_radius = {ROOT}\n'
     model = condensing.condense(toml(tmp_path, text)).blade
-    expected = condensing.condense(toml(folder, WHOLE)).blade
-    assert_same(model.segments, expected.segments, 1e-7)
-    np.testing.assert_allclose(model.root, expected.root, atol=1e-12)
+    assert_same(model.segments, whole.segments, 1e-7)
+    np.testing.assert_allclose(model.root, whole.root, atol=1e-12)
 
 
 @pytest.mark.slow
@@ -169,12 +173,11 @@ def test_a_superelement_of_two_nodes_with_its_body(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_what_is_kept_is_the_model(folder: Path, tmp_path: Path) -> None:
-    model = condensing.condense(toml(folder, WHOLE)).blade
-    condensed.write(tmp_path / "segments.json", model)
+def test_what_is_kept_is_the_model(whole: condensed.Condensed, tmp_path: Path) -> None:
+    condensed.write(tmp_path / "segments.json", whole)
     kept = condensed.read(tmp_path / "segments.json")
-    assert_same(kept.segments, model.segments, 0.0)
-    np.testing.assert_array_equal(kept.root, model.root)
+    assert_same(kept.segments, whole.segments, 0.0)
+    np.testing.assert_array_equal(kept.root, whole.root)
     (tmp_path / "segments.json").write_text(
         (tmp_path / "segments.json").read_text().replace('"undeformed"', '"deformed"', 1)
     )
@@ -254,22 +257,24 @@ def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, 
 
 
 @pytest.mark.slow
-def test_a_file_by_the_command(folder: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_file_by_the_command(
+    folder: Path, whole: condensed.Condensed, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     """Tables in the page; the same modes again, in other units, from the segments kept."""
     path = toml(folder, WHOLE)
     status, out, _ = run(capsys, str(path), "--omega", "0:100:100", "--modes", "3", "-o", str(tmp_path))
     assert status == 0
     page = (tmp_path / "condensation.md").read_text()
     assert page.strip() in out
-    solved = condensed.modes(condensing.condense(path).blade, 100.0, 3)
-    whole = list(zip(solved.frequencies, solved.uncertainty, strict=True))
+    solved = condensed.modes(whole, 100.0, 3)
+    expected = list(zip(solved.frequencies, solved.uncertainty, strict=True))
     rows = [[c.strip() for c in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("|")]
-    assert [row[3:5] for row in rows if row[0] == "100"] == [[certain(f, u), relative(u)] for f, u in whole]
+    assert [row[3:5] for row in rows if row[0] == "100"] == [[certain(f, u), relative(u)] for f, u in expected]
     assert sum(float(row[2]) for row in rows if len(row) == 11 and row[0].isdigit()) == pytest.approx(11.1353, rel=1e-4)
     status, out, _ = run(capsys, str(tmp_path / "segments.json"), "--rpm", "954.9296585", "-o", str(tmp_path / "again"))
     assert status == 0
     again = [line.split("|")[4].strip() for line in out.splitlines() if line.startswith("| 954.93")]
-    assert again[:2] == [certain(f / (2 * np.pi), u) for f, u in whole[:2]]
+    assert again[:2] == [certain(f / (2 * np.pi), u) for f, u in expected[:2]]
 
 
 @pytest.mark.parametrize(
