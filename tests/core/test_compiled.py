@@ -32,9 +32,9 @@ print(kernels.__name__, *map(repr, solve.mesh_modes(blade, 8.0, 40, 8).frequenci
 def test_a_processor_without_avx2_has_the_same_answers(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("SOUTHWELL_BASELINE", "1")
     run = subprocess.run([sys.executable, "-c", FREQUENCIES], capture_output=True, text=True, check=True)
-    name, *found = run.stdout.split()
+    name, *result = run.stdout.split()
     assert name == "southwell.core.compiled.baseline"
-    np.testing.assert_allclose(np.array(found, float), solve.mesh_modes(BLADE, 8.0, 40, 8).frequencies, rtol=1e-11)
+    np.testing.assert_allclose(np.array(result, float), solve.mesh_modes(BLADE, 8.0, 40, 8).frequencies, rtol=1e-11)
 
 
 def test_the_version_is_that_for_this_processor(monkeypatch: pytest.MonkeyPatch) -> None:

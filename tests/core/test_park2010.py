@@ -271,9 +271,9 @@ def test_the_solver_has_these_terms_on_closed_loops(name: str) -> None:
     assert_close(oracle.steady(t, q + 1e-3), q)
     if len(theirs.M):
         park2010.accelerations(t, ours.at)
-        found = modal.modes(theirs)
-        values = getattr(found, "values", None)
-        values = 1j * found.frequencies if values is None else values
+        solution = modal.modes(theirs)
+        values = getattr(solution, "values", None)
+        values = 1j * solution.frequencies if values is None else values
         assert_close(np.sort(np.abs(oracle.modes(ours)[0])), np.sort(np.abs(values)))
 
 
@@ -287,9 +287,9 @@ BLADES: dict[str, tuple[Case, Variant]] = {
 @pytest.mark.slow
 def test_the_papers_table() -> None:
     """Park et al. (2010), Table 1, column Present, to its last digit: 51 bodies, 50 elements."""
-    found = paper.paper_modes(without_rotary_inertia(PARK), 10.0, 50, 6)
-    tip = np.abs(found.shapes[:, -1])
-    assert [f"{f:.4g}" for f in found.frequencies[tip[:, 1] > tip[:, 2]][:3]] == ["11.71", "70.37", "189.7"]
+    result = paper.paper_modes(without_rotary_inertia(PARK), 10.0, 50, 6)
+    tip = np.abs(result.shapes[:, -1])
+    assert [f"{f:.4g}" for f in result.frequencies[tip[:, 1] > tip[:, 2]][:3]] == ["11.71", "70.37", "189.7"]
 
 
 def test_reactions_of_a_blades_joints_do_no_work() -> None:

@@ -104,9 +104,9 @@ def test_energy_fractions_do_not_depend_on_the_reference_axis(y: float, z: float
         "solid", LENGTH, 0.3, EA=1e7, GJ=8e2, EI_y=1e4, EI_z=6e4, GA_y=1e7, GA_z=1e7, mass=MASS, I_y=1e-2, I_z=6e-2
     )
     here = solve(solid, 0.0, 30, 8)
-    there = solve(shifted(solid, y, z), 0.0, 30, 8)
-    np.testing.assert_allclose(there.frequencies, here.frequencies, rtol=1e-8)
-    np.testing.assert_allclose(participation(there, shifted(solid, y, z)), participation(here, solid), atol=1e-4)
+    solution = solve(shifted(solid, y, z), 0.0, 30, 8)
+    np.testing.assert_allclose(solution.frequencies, here.frequencies, rtol=1e-8)
+    np.testing.assert_allclose(participation(solution, shifted(solid, y, z)), participation(here, solid), atol=1e-4)
 
 
 @pytest.mark.parametrize("angle", [0.1, -0.3])
@@ -120,8 +120,8 @@ def test_precone_and_pitch_turn_the_axes_with_the_blade(angle: float) -> None:
 def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
     """Clamped-free: flap and edge at (βL)² √(EI/m)/L², torsion at (k − ½)π √(GJ/I_p)/L (Rayleigh 1877)."""
     beam = uniform_blade("soft", LENGTH, 0.0, EA=1e9, GJ=4.0, EI_y=1e4, EI_z=1.4e4, mass=MASS, I_y=1e-3, I_z=1e-3)
-    found = solve(beam, 0.0, 40, 8)
-    names = numbered(families(participation(found, beam)))
+    solution = solve(beam, 0.0, 40, 8)
+    names = numbered(families(participation(solution, beam)))
     roots = np.array([1.87510407, 4.69409113])
     expected = {
         **{f"flapwise {k + 1}": r**2 * np.sqrt(1e4 / MASS) / LENGTH**2 for k, r in enumerate(roots)},
@@ -129,7 +129,7 @@ def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
         **{f"torsion {k}": (k - 0.5) * np.pi * np.sqrt(4.0 / 2e-3) / LENGTH for k in (1, 2, 3)},
     }
     for name, frequency in expected.items():
-        assert found.frequencies[names.index(name)] == pytest.approx(frequency, rel=2e-3), name
+        assert solution.frequencies[names.index(name)] == pytest.approx(frequency, rel=2e-3), name
 
 
 def test_without_moments_of_inertia_torsion_has_no_energy() -> None:
@@ -153,9 +153,9 @@ def test_a_mode_without_a_dominant_motion_is_mixed_and_its_energy_fractions_are_
 def test_the_windpact_1_5_blades_mode_near_4_2_hz_is_its_second_flap() -> None:
     """At 60 rpm BModes prints 4.1912 Hz; a sum of squared metres and radians would call it the first torsion."""
     for variant in library.load("windpact-1.5").variants:
-        found = solve(variant.blade, 2 * np.pi, 40, 6)
-        fractions = participation(found, variant.blade)
-        assert 4.1 < found.frequencies[2] / (2 * np.pi) < 4.4
+        solution = solve(variant.blade, 2 * np.pi, 40, 6)
+        fractions = participation(solution, variant.blade)
+        assert 4.1 < solution.frequencies[2] / (2 * np.pi) < 4.4
         assert numbered(families(fractions)) == (
             "flapwise 1",
             "edgewise 1",

@@ -11,10 +11,10 @@ def test_motions_without_stiffness_are_the_null_space(least: float) -> None:
     rng = np.random.default_rng(3)
     u, v = (np.linalg.qr(rng.normal(size=(12, 12)))[0] for _ in range(2))
     A = (u * np.array([*[1.0] * 11, least])) @ v
-    found = rank.ranked(A)
-    assert found.null.shape[1] == (least < rank.TOLERANCE) == found.left_null.shape[1]
+    ranking = rank.ranked(A)
+    assert ranking.null.shape[1] == (least < rank.TOLERANCE) == ranking.left_null.shape[1]
     b = A @ np.arange(12.0)
-    np.testing.assert_allclose(A @ found.solve(b), b, atol=1e-6)
+    np.testing.assert_allclose(A @ ranking.solve(b), b, atol=1e-6)
 
 
 @pytest.mark.parametrize(("least", "rank_"), [(1e-10, 12), (1e-18, 11)])
@@ -25,6 +25,6 @@ def test_a_small_singular_value_is_zero_only_if_errors_explain_it(least: float, 
     A = (u * np.array([*[1.0] * 11, least])) @ v
     assert rank.ranked(A, error=np.full(12, 1e-8)).rank == rank_
     assert rank.ranked(A, error=np.full(12, 1e-4)).rank == 11  # a stiffness of 1e-8 may be rounding
-    found = rank.ranked(A, error=np.full(12, 1e-8))
-    np.testing.assert_allclose(A @ found.null, 0.0, atol=1e-15)
-    np.testing.assert_allclose(found.left_null.T @ A, 0.0, atol=1e-15)
+    ranking = rank.ranked(A, error=np.full(12, 1e-8))
+    np.testing.assert_allclose(A @ ranking.null, 0.0, atol=1e-15)
+    np.testing.assert_allclose(ranking.left_null.T @ A, 0.0, atol=1e-15)

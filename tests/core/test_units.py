@@ -54,9 +54,12 @@ def test_predicates_and_frequencies_do_not_depend_on_units(seed: int, kg: float,
     blade, omega = random_blade(np.random.default_rng(seed))
     other = in_units(blade, kg, m, s)
     assert [holds(other) for holds in PREDICATES] == [holds(blade) for holds in PREDICATES]
-    here, there = modes(blade, omega, 16, 5), modes(other, omega / s, 16, 5)
+    here, solution = modes(blade, omega, 16, 5), modes(other, omega / s, 16, 5)
     np.testing.assert_allclose(
-        there.frequencies * s / here.frequencies, 1.0, rtol=0, atol=10 * max(here.rounding.max(), there.rounding.max())
+        solution.frequencies * s / here.frequencies,
+        1.0,
+        rtol=0,
+        atol=10 * max(here.rounding.max(), solution.rounding.max()),
     )
 
 
@@ -84,8 +87,8 @@ def test_refusals_do_not_depend_on_units(
     matrix[row, column] += rng.choice([1e-15, 1e-3, 0.3, 3.0]) * size
     powers = np.add.outer(np.repeat([0, 1], 3), np.repeat([0, 1], 3))
     first = {"mass": kg / m, "stiffness": kg * m / s**2}[name]
-    there = in_units(blade, kg, m, s)
-    refused = [_refusal(blade, name, matrix), _refusal(there, name, first * float(m) ** powers * matrix)]
+    elsewhere = in_units(blade, kg, m, s)
+    refused = [_refusal(blade, name, matrix), _refusal(elsewhere, name, first * float(m) ** powers * matrix)]
     assert refused[0] == refused[1]
 
 

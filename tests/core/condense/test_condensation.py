@@ -70,9 +70,9 @@ def test_the_body_has_the_segments_mass_centre_and_inertia() -> None:
     mass = SQUARE.density * a * b * length
     moments = mass / 12 * np.array([a * a + b * b, length**2 + a * a, length**2 + b * b])
     model = finite_elements(square_bar(length, 2), SQUARE)
-    found = segment(model, *tied(model, "average", 0.0, length)).inertia
+    result = segment(model, *tied(model, "average", 0.0, length)).inertia
     exact = inertia(mass, moments, [length / 2, 0, 0])
-    np.testing.assert_allclose(found, exact, atol=1e-12 * mass)
+    np.testing.assert_allclose(result, exact, atol=1e-12 * mass)
 
 
 @pytest.mark.slow
@@ -82,11 +82,11 @@ def test_rigid_ties_restrain_warping_and_average_ties_give_way() -> None:
     The effect of the ends hardly depends on the length: they shorten (rigid) or lengthen (average) the bar equally at one and
     two chords. Rigid ends shorten it by less than the 2 √(E C_w/GJ) of Vlasov's theory, C_w = c³t³/144, without shear.
     """
-    found = {how: np.array([torsion(k * CHORD, how) for k in (1, 2)]) for how in ("rigid", "average", None)}
-    np.testing.assert_allclose(found[None], 1.0, atol=5e-3)
-    assert (found["rigid"] > 1.2).all()
-    assert (found["average"] < 0.95).all()
-    lost = {how: np.array([1, 2]) * (1 - 1 / values) for how, values in found.items()}
+    result = {how: np.array([torsion(k * CHORD, how) for k in (1, 2)]) for how in ("rigid", "average", None)}
+    np.testing.assert_allclose(result[None], 1.0, atol=5e-3)
+    assert (result["rigid"] > 1.2).all()
+    assert (result["average"] < 0.95).all()
+    lost = {how: np.array([1, 2]) * (1 - 1 / values) for how, values in result.items()}
     vlasov = 2 * np.sqrt(SQUARE.young * CHORD**3 * THICK**3 / 144 / st_venant()) / CHORD
     assert 0.7 * vlasov < lost["rigid"][1] < vlasov
     for how in ("rigid", "average"):
@@ -112,8 +112,8 @@ def test_rigid_ties_miss_the_target_on_the_cantilever() -> None:
     Finer meshes give 0.62 to 0.63 %. With three Gauss points along the span, which lock, this mesh gave 1.1 % and the
     finest 0.66 %.
     """
-    found = chain_modes(mesh_from_segments([cantilever_segment("rigid")] * 20, at(HUB)), 0.0, 6).frequencies
-    assert (found / np.repeat(timoshenko(3), 2) - 1 > 0.005).all()
+    frequencies = chain_modes(mesh_from_segments([cantilever_segment("rigid")] * 20, at(HUB)), 0.0, 6).frequencies
+    assert (frequencies / np.repeat(timoshenko(3), 2) - 1 > 0.005).all()
 
 
 def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
@@ -122,8 +122,8 @@ def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
     D = np.concatenate([-np.eye(6), sp.adjoint(whole.undeformed)], axis=1)
     alone = segment_from_matrix(D.T @ whole.stiffness @ D, whole.undeformed, whole.inertia)
     np.testing.assert_allclose(alone.stiffness, whole.stiffness, rtol=1e-9, atol=1e-9 * np.abs(whole.stiffness).max())
-    found, expected = (chain_modes(mesh_from_segments([s] * 20, at(HUB)), 10.0, 6).frequencies for s in (alone, whole))
-    np.testing.assert_allclose(found, expected, rtol=1e-5)
+    result, expected = (chain_modes(mesh_from_segments([s] * 20, at(HUB)), 10.0, 6).frequencies for s in (alone, whole))
+    np.testing.assert_allclose(result, expected, rtol=1e-5)
 
 
 # The tapered, twisted blade
@@ -133,10 +133,10 @@ def test_an_exported_segment_needs_only_its_matrix_and_its_body() -> None:
 @pytest.mark.parametrize("omega", [0.0, pytest.param(SPEED, marks=pytest.mark.nightly)])
 def test_condensed_blade_against_the_whole_solid(omega: float) -> None:
     """20 segments in place, five lowest frequencies (the fifth is torsion) within 0.5 %, mode by mode."""
-    found = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 6)
+    solution = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 6)
     whole = twisted_modes(omega)
-    np.testing.assert_allclose(found.frequencies[:5], whole.frequencies[:5], rtol=2e-3)
-    assert (mac(found, whole).diagonal()[:5] > 0.999).all()
+    np.testing.assert_allclose(solution.frequencies[:5], whole.frequencies[:5], rtol=2e-3)
+    assert (mac(solution, whole).diagonal()[:5] > 0.999).all()
 
 
 @pytest.mark.nightly
@@ -171,9 +171,9 @@ def test_the_choice_of_section_frames_does_not_matter(omega: float, shift: float
     on = [np.flatnonzero(np.abs(model.points[:, 0] - v) < 1e-9) for v in x]
     ties_ = [(ties.average if k else ties.rigid)(model, on[k], f, f"{k}") for k, f in enumerate(frames)]
     masses = lumped_by_part(twisted(), STEEL, cuts())
-    found = chain_modes(mesh_from_segments(in_place(model, ties_, masses), at(ROOT)), omega, 5).frequencies
+    frequencies = chain_modes(mesh_from_segments(in_place(model, ties_, masses), at(ROOT)), omega, 5).frequencies
     parallel = chain_modes(mesh_from_segments(segments_in_place(), at(ROOT)), omega, 5).frequencies
-    np.testing.assert_allclose(found, parallel, rtol=within)
+    np.testing.assert_allclose(frequencies, parallel, rtol=within)
 
 
 def test_the_compressed_model_agrees_with_the_general_solver() -> None:

@@ -109,11 +109,11 @@ def test_abaqus_matrix_input(tmp_path: Path, which: str, comma: str) -> None:
 def test_abaqus_coordinate_names_no_freedoms(tmp_path: Path, which: str) -> None:
     path = tmp_path / "part_STIF1.mtx"
     path.write_text("\n".join(f"{i + 1} {j + 1} {MATRIX[i, j]:.15e}" for i, j in entries(which)))
-    found = read(path)
-    np.testing.assert_allclose(found.matrix.toarray(), MATRIX, rtol=1e-14)
-    assert not len(found.nodes)
+    content = read(path)
+    np.testing.assert_allclose(content.matrix.toarray(), MATRIX, rtol=1e-14)
+    assert not len(content.nodes)
     with pytest.raises(MatrixFileError, match="does not name its freedoms"):
-        exported.model(found, {})
+        exported.model(content, {})
 
 
 # Nastran

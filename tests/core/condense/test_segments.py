@@ -75,10 +75,10 @@ def uniform_chain(n: int, omega: float = 0.0, count: int = 8) -> Array:
 
 def test_two_joined_segments_are_one_of_twice_the_length() -> None:
     """``body_twist`` differs by the rotary inertia of the sections, which ``segment_from_matrix`` neglects."""
-    for found, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
+    for result, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
         for field, within in (("undeformed", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("body_twist", 5e-3)):
             wanted = getattr(expected, field)
-            np.testing.assert_allclose(getattr(found, field), wanted, atol=within * np.abs(wanted).max())
+            np.testing.assert_allclose(getattr(result, field), wanted, atol=within * np.abs(wanted).max())
     assert len(joined(uniform_segments(7))) == 4
 
 
@@ -86,11 +86,11 @@ def test_two_joined_segments_are_one_of_twice_the_length() -> None:
 def test_the_uncertainty_covers_the_error_due_to_the_number_of_segments(n: int) -> None:
     """Against core's refined beam; the uncertainty is less than a hundred times the error."""
     exact = modes(PARK, 10.0, count=4, accuracy=1e-9).frequencies
-    found = segment_modes(uniform_segments(n), at(PARK.hub_radius), 10.0, 4)
-    error = np.abs(found.frequencies / exact - 1.0)
-    assert (error <= found.uncertainty).all()
-    assert (found.uncertainty < 100.0 * error).all()
-    assert 0 < found.strain < 0.01
+    result = segment_modes(uniform_segments(n), at(PARK.hub_radius), 10.0, 4)
+    error = np.abs(result.frequencies / exact - 1.0)
+    assert (error <= result.uncertainty).all()
+    assert (result.uncertainty < 100.0 * error).all()
+    assert 0 < result.strain < 0.01
 
 
 def test_few_segments_have_infinite_uncertainty_and_large_strains_are_refused() -> None:
@@ -115,12 +115,12 @@ def test_torsion_is_that_of_masses_in_the_middle() -> None:
     length = PARK.length / n
     k12, _, undeformed = beam_segment(length)
     body = inertia(1.2 * length, [1e2 * length, 60.0, 60.0], [length / 2, 0, 0])
-    found = chain_modes(
+    frequencies = chain_modes(
         mesh_from_segments([segment_from_matrix(k12, undeformed, body)] * n, np.eye(4)), 0.0, 20
     ).frequencies
     beta = (np.arange(1, 4) - 0.5) * np.pi / PARK.length
     exact = 2 / length * np.sqrt(7e10 / 2.6 * 4e-7 / 1e2) * np.tan(beta * length / 2)
-    nearest = np.abs(found[:, None] / exact - 1).min(0)
+    nearest = np.abs(frequencies[:, None] / exact - 1).min(0)
     assert nearest.max() < 1e-6
 
 

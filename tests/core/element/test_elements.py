@@ -38,8 +38,8 @@ def differences(value) -> np.ndarray:
 
 def test_strain_rate_is_the_derivative_of_the_strain(law, bent) -> None:
     x, beta = bent
-    found = differences(lambda step: measures.response(law, sp.exp(step[:6]) @ x, beta + step[6:]).strain)
-    np.testing.assert_allclose(measures.response(law, x, beta).rate, found, atol=1e-7)
+    result = differences(lambda step: measures.response(law, sp.exp(step[:6]) @ x, beta + step[6:]).strain)
+    np.testing.assert_allclose(measures.response(law, x, beta).rate, result, atol=1e-7)
 
 
 def test_geometric_stiffness_is_the_derivative_of_the_wrench(law, bent) -> None:

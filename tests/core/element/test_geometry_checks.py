@@ -98,15 +98,15 @@ def test_a_beamdyn_curve_of_few_points_is_followed(tmp_path: Path) -> None:
     path.write_text(
         path.read_text().replace("-1.5000000E+00  4.0000000E-01  4.00", "-6.0000000E+00  4.0000000E-01  4.00")
     )
-    found = reading(path).blade
-    assert found.curve[-1, 2] == -6.0
+    result = reading(path).blade
+    assert result.curve[-1, 2] == -6.0
     z = np.linspace(0.0, 40.0, 5)
     theirs = CubicSpline(z, [[0, 0], [0.1, -0.05], [0, -0.1], [-0.5, 0], [-6, 0.4]], bc_type="natural")
-    s = 0.5 * (found.stations[1:] + found.stations[:-1])
-    pose = frames(found, s)
-    slope = theirs(pose[:, 0, 3] - found.hub_radius, 1)
+    s = 0.5 * (result.stations[1:] + result.stations[:-1])
+    pose = frames(result, s)
+    slope = theirs(pose[:, 0, 3] - result.hub_radius, 1)
     tangent = np.column_stack([np.ones_like(s), -slope[:, 1], slope[:, 0]])
-    tangent = tangent @ root(found)[:3, :3].T / np.linalg.norm(tangent, axis=1)[:, None]
+    tangent = tangent @ root(result)[:3, :3].T / np.linalg.norm(tangent, axis=1)[:, None]
     np.testing.assert_allclose(pose[:, :3, 0], tangent, atol=2e-3)
 
 
@@ -150,11 +150,11 @@ def test_a_curve_may_begin_off_the_pitch_axis() -> None:
 
 @pytest.mark.parametrize("root", [4e-16, 3.6e-12, -2e-13])
 def test_a_root_within_rounding_of_zero_is_the_root(tmp_path: Path, root: float) -> None:
-    found = from_file(tmp_path, [[root, 0.0, 0.0], [10.0, 0.0, 0.0]], root)
-    assert found.stations[0] == 0.0
+    result = from_file(tmp_path, [[root, 0.0, 0.0], [10.0, 0.0, 0.0]], root)
+    assert result.stations[0] == 0.0
     exact = from_file(tmp_path, [[0.0, 0.0, 0.0], [10.0, 0.0, 0.0]])
     np.testing.assert_allclose(
-        mesh_modes(found, 3.0, 10, 5).frequencies, mesh_modes(exact, 3.0, 10, 5).frequencies, rtol=1e-11
+        mesh_modes(result, 3.0, 10, 5).frequencies, mesh_modes(exact, 3.0, 10, 5).frequencies, rtol=1e-11
     )
 
 
@@ -170,8 +170,8 @@ def test_a_table_that_ends_within_rounding_of_the_tip_is_complete(tmp_path: Path
     path.write_text(f"{header}\n3.6e-13,0,10,1e4,4e4,1e4,1e7\n{last!r},0,10,1e4,4e4,1e4,1e7\n")
     from southwell.cases.input.readers.source import Mount
 
-    found = reading(path, Mount(length=10.0)).blade
-    np.testing.assert_array_equal(found.stations, [0.0, 10.0])
+    result = reading(path, Mount(length=10.0)).blade
+    np.testing.assert_array_equal(result.stations, [0.0, 10.0])
 
 
 @pytest.mark.parametrize("name", ["precone", "pitch"])

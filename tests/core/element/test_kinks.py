@@ -80,15 +80,15 @@ def test_a_kink_is_a_rigid_corner_between_two_straight_beams(mass, stiffness) ->
     )
     beams = tuple(mb.Beam(f"tip {k}", f"tip {k + 1}", single_element(second.beams, k)) for k in range(2))
     whole = replace(m, bodies=(*m.bodies, *bodies), joints=(*m.joints, corner, *joints), beams=(*m.beams, *beams))
-    found = mesh_modes(kinked(), OMEGA, 10, 8, mass=mass, stiffness=stiffness).frequencies
-    np.testing.assert_allclose(found, mb.solve(whole).frequencies[:8], rtol=1e-9)
+    frequencies = mesh_modes(kinked(), OMEGA, 10, 8, mass=mass, stiffness=stiffness).frequencies
+    np.testing.assert_allclose(frequencies, mb.solve(whole).frequencies[:8], rtol=1e-9)
 
 
 @pytest.mark.parametrize("blade", [kinked(), kinked(precone=0.1, pitch=0.2), with_all()], ids=["beam", "coned", "all"])
 def test_the_general_solver_agrees_on_kinks(blade: Blade) -> None:
     """The same discretisation, with elements that end in frames other than those of their nodes."""
-    found = mesh_modes(blade, 1.0, 8, 6).frequencies
-    np.testing.assert_allclose(found, mb.solve(mechanism(discretize(blade, 8), 1.0)).frequencies[:6], rtol=1e-9)
+    frequencies = mesh_modes(blade, 1.0, 8, 6).frequencies
+    np.testing.assert_allclose(frequencies, mb.solve(mechanism(discretize(blade, 8), 1.0)).frequencies[:6], rtol=1e-9)
 
 
 def test_elements_end_at_kinks_and_refinement_is_of_fourth_order() -> None:
@@ -197,10 +197,10 @@ M = "[10, 0, 0, 0, 0, 0, 10, 0, 0, 0, 0, 10, 0, 0, 0, 0.03, 0, 0, 0.01, 0, 0.02]
 def test_a_file_declares_its_kinks(tmp_path: Path) -> None:
     path = tmp_path / "blade.toml"
     path.write_text(FILE.format(kinks="[8.0]", k=K, m=M))
-    found = reading(path).blade
+    blade = reading(path).blade
     expected = mesh_modes(kinked(), OMEGA, 20, 5).frequencies
-    np.testing.assert_allclose(mesh_modes(found, OMEGA, 20, 5).frequencies, expected, rtol=1e-8)
-    southwell_toml.write(found, path)
+    np.testing.assert_allclose(mesh_modes(blade, OMEGA, 20, 5).frequencies, expected, rtol=1e-8)
+    southwell_toml.write(blade, path)
     assert reading(path).blade.kinks == (8.0,)
 
 

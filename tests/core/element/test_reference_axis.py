@@ -64,27 +64,27 @@ def test_the_shift_is_that_of_a_rigid_body() -> None:
 def test_frequencies_at_rest_do_not_depend_on_the_reference_axis(mass, stiffness) -> None:
     """The discretisations are the same, so the agreement is to rounding."""
     original = blade(np.random.default_rng(3))
-    found = [
+    results = [
         mesh_modes(b, 0.0, 12, 8, mass=mass, stiffness=stiffness).frequencies
         for b in (original, about(original, OFFSET))
     ]
-    np.testing.assert_allclose(found[1], found[0], rtol=1e-9)
+    np.testing.assert_allclose(results[1], results[0], rtol=1e-9)
 
 
 @pytest.mark.parametrize(("elements", "tolerance"), [(12, 1e-8), (24, 1e-9), (48, 1e-10)])
 def test_frequencies_of_a_rotating_blade_do_not_depend_on_the_reference_axis(elements, tolerance) -> None:
     """Reissner's strains transform exactly as Γ + κ × d; the difference is the discretisation error, of fourth order."""
     original = blade(np.random.default_rng(3))
-    found = [mesh_modes(b, 12.0, elements, 5).frequencies for b in (original, about(original, OFFSET))]
-    np.testing.assert_allclose(found[1], found[0], rtol=tolerance)
+    results = [mesh_modes(b, 12.0, elements, 5).frequencies for b in (original, about(original, OFFSET))]
+    np.testing.assert_allclose(results[1], results[0], rtol=tolerance)
 
 
 def test_an_axis_shifted_for_the_stiffness_only_is_detected() -> None:
     """Negative control: stiffness about the other axis, mass not."""
     original = blade(np.random.default_rng(3))
     wrong = replace(original, stiffness=about(original, OFFSET).stiffness)
-    found = [mesh_modes(b, 12.0, 12, 8).frequencies for b in (original, wrong)]
-    assert np.abs(found[1] / found[0] - 1).max() > 1e-2
+    results = [mesh_modes(b, 12.0, 12, 8).frequencies for b in (original, wrong)]
+    assert np.abs(results[1] / results[0] - 1).max() > 1e-2
 
 
 def reframed(m: mb.Mechanism, rng: np.random.Generator) -> mb.Mechanism:

@@ -42,20 +42,20 @@ LAWS += [pytest.param(mb.Sum((SHAKE, RAMP)), id="sum")]
 @pytest.mark.parametrize("law", LAWS)
 def test_support_accelerating_upwards(law, time: float) -> None:
     """ω² = (g + a)/l at that instant."""
-    found = mb.solve(pendulum(law, "y"), time=time)
+    solution = mb.solve(pendulum(law, "y"), time=time)
     lifted = G + acceleration(law, time)
-    assert found.values[0] ** 2 == pytest.approx(-lifted / LENGTH, rel=1e-12)
-    assert found.steady["slide.z"] == pytest.approx(law(time), rel=1e-14)
+    assert solution.values[0] ** 2 == pytest.approx(-lifted / LENGTH, rel=1e-12)
+    assert solution.steady["slide.z"] == pytest.approx(law(time), rel=1e-14)
 
 
 @pytest.mark.parametrize("time", [0.0, 0.35, 1.2])
 @pytest.mark.parametrize("law", LAWS)
 def test_support_accelerating_sideways(law, time: float) -> None:
     """It hangs at tan θ = −a/g and swings with ω² = √(g² + a²)/l."""
-    found = mb.solve(pendulum(law, "x"), time=time)
+    solution = mb.solve(pendulum(law, "x"), time=time)
     a = acceleration(law, time)
-    assert np.tan(found.steady["pin.rz"]) == pytest.approx(-a / G, rel=1e-10)
-    assert found.frequencies[0] ** 2 == pytest.approx(np.hypot(G, a) / LENGTH, rel=1e-10)
+    assert np.tan(solution.steady["pin.rz"]) == pytest.approx(-a / G, rel=1e-10)
+    assert solution.frequencies[0] ** 2 == pytest.approx(np.hypot(G, a) / LENGTH, rel=1e-10)
 
 
 def test_a_rotor_that_spins_up() -> None:
@@ -70,12 +70,12 @@ def test_a_rotor_that_spins_up() -> None:
         ),
         motions=(mb.Motion("shaft.rz", law=Polynomial([0.0, 0.0, 0.5 * alpha])),),
     )
-    found = mb.solve(m, {"lag.rz": -0.1}, time=time)
-    q, omega = found.steady["lag.rz"], alpha * time
+    solution = mb.solve(m, {"lag.rz": -0.1}, time=time)
+    q, omega = solution.steady["lag.rz"], alpha * time
     assert offset * first * (omega**2 * np.sin(q) + alpha * np.cos(q)) + second * alpha == pytest.approx(0.0, abs=1e-9)
     expected = offset * first * (omega**2 * np.cos(q) - alpha * np.sin(q)) / second
-    assert found.frequencies[0] == pytest.approx(np.sqrt(expected), rel=1e-10)
-    assert found.linear.state.v[0] == pytest.approx(omega)
+    assert solution.frequencies[0] == pytest.approx(np.sqrt(expected), rel=1e-10)
+    assert solution.linear.state.v[0] == pytest.approx(omega)
 
 
 def test_derivatives_are_those_of_the_function() -> None:

@@ -63,13 +63,13 @@ def in_SI(name: str) -> mb.Solution:
 def test_frequencies_scale_with_the_units(name: str, mass: int, length: int, time: int) -> None:
     """Within the stated rounding of both; the same coordinates are independent and the same constraints redundant."""
     units = Units(10.0**mass, 10.0**length, 10.0**time)
-    expected, found = in_SI(name), mb.solve(*in_other_units(ACCEPTED[name](), units))
-    assert (found.independent, found.redundant) == (expected.independent, expected.redundant)
-    np.testing.assert_array_equal(found.frequencies == 0, expected.frequencies == 0)  # rigid modes
-    allowed = expected.uncertainty + found.uncertainty
-    assert (np.abs(found.frequencies / units.time - expected.frequencies) <= allowed * expected.frequencies).all()
+    expected, solution = in_SI(name), mb.solve(*in_other_units(ACCEPTED[name](), units))
+    assert (solution.independent, solution.redundant) == (expected.independent, expected.redundant)
+    np.testing.assert_array_equal(solution.frequencies == 0, expected.frequencies == 0)  # rigid modes
+    allowed = expected.uncertainty + solution.uncertainty
+    assert (np.abs(solution.frequencies / units.time - expected.frequencies) <= allowed * expected.frequencies).all()
     # eigenvalues of equal modulus, such as the real pair of an instability, have no order
-    pairs = np.abs(found.values[:, None] / units.time - expected.values) <= 2.0 * allowed[:, None] * np.abs(
+    pairs = np.abs(solution.values[:, None] / units.time - expected.values) <= 2.0 * allowed[:, None] * np.abs(
         expected.values
     )
     assert pairs.any(axis=0).all()
@@ -94,9 +94,9 @@ def test_a_slider_crank_of_any_size_is_assembled(metres: float) -> None:
     mechanism, _ = linkages.slider_crank()
     still = replace(mechanism, motions=(mb.Motion("turn.rz", 0.0), mb.Motion("O.rz", 0.8)))
     guess = {"P.rz": -0.5, "guide.z": 1.0}
-    found = mb.solve(*in_other_units((still, guess), Units(length=1.0 / metres)))
+    solution = mb.solve(*in_other_units((still, guess), Units(length=1.0 / metres)))
     exact = 0.5 * np.cos(0.8) + np.sqrt(4.0 - (0.5 * np.sin(0.8)) ** 2)
-    assert found.steady["guide.z"] == pytest.approx(exact * metres, rel=1e-12)
+    assert solution.steady["guide.z"] == pytest.approx(exact * metres, rel=1e-12)
 
 
 def test_units_of_a_prismatic_oscillator() -> None:
@@ -108,10 +108,10 @@ def test_units_of_a_prismatic_oscillator() -> None:
         coordinate_springs=(mb.CoordinateSpring("rail.z", 50.0, 4.0, 0.3),),
         gravity=(0.0, 0.0, -9.81),
     )
-    found = mb.solve(in_units(mechanism, Units(1e-3, 1e-3, 1e-3)))
-    assert found.frequencies == pytest.approx([5.0e-3], rel=1e-12)
-    assert found.damping == pytest.approx([4.0 / (2 * 2.0 * 5.0)], rel=1e-12)
-    assert found.steady["rail.z"] == pytest.approx(1e3 * (0.3 - 2.0 * 9.81 / 50.0), rel=1e-12)
+    solution = mb.solve(in_units(mechanism, Units(1e-3, 1e-3, 1e-3)))
+    assert solution.frequencies == pytest.approx([5.0e-3], rel=1e-12)
+    assert solution.damping == pytest.approx([4.0 / (2 * 2.0 * 5.0)], rel=1e-12)
+    assert solution.steady["rail.z"] == pytest.approx(1e3 * (0.3 - 2.0 * 9.81 / 50.0), rel=1e-12)
 
 
 @pytest.mark.parametrize("rate", [1e160, 1e200])
@@ -168,5 +168,5 @@ def test_a_beam_with_mass_moves_steadily_in_any_unit(mass: int, length: int, tim
             with pytest.raises(mb.MechanismError, match="do not move together steadily"):
                 mb.solve(scaled)
         else:
-            expected, found = mb.solve(mechanism), mb.solve(scaled)
-            np.testing.assert_allclose(found.frequencies / units.time, expected.frequencies, rtol=1e-6)
+            expected, solution = mb.solve(mechanism), mb.solve(scaled)
+            np.testing.assert_allclose(solution.frequencies / units.time, expected.frequencies, rtol=1e-6)

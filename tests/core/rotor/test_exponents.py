@@ -49,10 +49,10 @@ def mathieu(a: float, q: float) -> Periodic:
 
 def test_limits_of_mathieus_chart() -> None:
     q = 1.0
-    found = limits(lambda a: mathieu(a, q), [-1.0, -0.2, 1.0, 3.0])
+    result = limits(lambda a: mathieu(a, q), [-1.0, -0.2, 1.0, 3.0])
     exact = [mathieu_a(0, q), mathieu_b(1, q), mathieu_a(1, q)]
-    assert len(found) == len(exact)
-    for limit, value in zip(found, exact, strict=True):
+    assert len(result) == len(exact)
+    for limit, value in zip(result, exact, strict=True):
         assert limit.at == pytest.approx(value, abs=1e-9)
         assert limit.uncertainty < 1e-9
 
@@ -70,8 +70,8 @@ def test_isotropic_springs_seen_from_the_rotating_frame() -> None:
     system = constant(np.eye(2), 2 * omega * J, (nature**2 - omega**2) * np.eye(2), omega, ("x", "y"))
     both = compared(system)
     for exponents in (both.floquet, both.hill):
-        found = np.sort(np.abs(exponents.frequencies))[::2]
-        np.testing.assert_allclose(found, [nature - omega, nature + omega], rtol=1e-10)
+        result = np.sort(np.abs(exponents.frequencies))[::2]
+        np.testing.assert_allclose(result, [nature - omega, nature + omega], rtol=1e-10)
         assert not exponents.tied.any()
 
 
@@ -97,8 +97,8 @@ def test_unequal_springs_seen_from_the_rotating_frame_have_tied_frequencies() ->
 def test_the_error_of_floquet_is_honest() -> None:
     system = flapping(0.5)
     exact = hill(system).values.real
-    found = floquet(system)
-    assert np.abs(np.sort(found.values.real) - np.sort(exact)).max() <= 1e-11 + found.error.max()
+    result = floquet(system)
+    assert np.abs(np.sort(result.values.real) - np.sort(exact)).max() <= 1e-11 + result.error.max()
 
 
 def test_refused() -> None:

@@ -45,8 +45,8 @@ def test_uncoupled_blades_seen_from_the_support() -> None:
     A = np.asarray(np.kron(np.array([[0.0, 1.0], [-(nature**2), 0.0]]), np.eye(3)), float)
     rates = np.column_stack([np.arange(3), np.arange(3) + 3])
     seen = mb.first_order(A, 0.3, omega, mb.blades_of(6, [[0, 1, 2]]), rates)
-    found = np.sort(np.abs(np.linalg.eigvals(seen).imag))[::2]
-    np.testing.assert_allclose(found, [nature - omega, nature, nature + omega], rtol=1e-12)
+    result = np.sort(np.abs(np.linalg.eigvals(seen).imag))[::2]
+    np.testing.assert_allclose(result, [nature - omega, nature, nature + omega], rtol=1e-12)
     start, time = np.array([0.3, -0.2, 0.5, 0.0, 0.1, 0.7]), 2.1
     T = [mb.transformation(0.3 + omega * t, 3) for t in (0.0, time)]
     z = np.linalg.solve(T[0], start[:3])

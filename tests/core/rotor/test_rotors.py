@@ -40,13 +40,13 @@ def test_coleman_and_feingold(omega: float) -> None:
     assert orbit.amplitude.max() < 1e-12
     with pytest.raises(PeriodicError, match="no constant modes"):
         averaged_exactly(system)
-    found = damped(*averaged_exactly(in_multiblade(system, THREE)).mean).values
-    np.testing.assert_allclose(found.imag / (2 * np.pi), COLEMAN_FEINGOLD[omega], atol=5e-9)
+    values = damped(*averaged_exactly(in_multiblade(system, THREE)).mean).values
+    np.testing.assert_allclose(values.imag / (2 * np.pi), COLEMAN_FEINGOLD[omega], atol=5e-9)
 
 
 def test_coleman_and_feingold_at_rest() -> None:
-    found = mb.solve(replace(coleman_feingold(0.0), motions=(mb.Motion(SHAFT),))).frequencies / (2 * np.pi)
-    np.testing.assert_allclose(found, [0.09917042, 0.31322738, 0.8, 0.80598123, 0.8069514], atol=5e-9)
+    result = mb.solve(replace(coleman_feingold(0.0), motions=(mb.Motion(SHAFT),))).frequencies / (2 * np.pi)
+    np.testing.assert_allclose(result, [0.09917042, 0.31322738, 0.8, 0.80598123, 0.8069514], atol=5e-9)
 
 
 def test_one_stiffer_blade_is_never_averaged_and_needs_floquet_and_hill() -> None:
@@ -66,12 +66,12 @@ def test_whirl_of_the_blades_in_both_frames() -> None:
     """Edgewise whirl at 2.4 rad/s: backward below and forward above the blade's own frequency of 0.8 Hz."""
     omega = 2.4
     system, _ = linearize(coleman_feingold(omega), SHAFT)
-    found = damped(*averaged_exactly(in_multiblade(system, THREE)).mean)
+    frequencies = damped(*averaged_exactly(in_multiblade(system, THREE)).mean)
     pair = np.array([[3, 4]])
     for mode, name in ((2, "backward"), (4, "forward")):
-        turning = whirl(found.vectors[:, mode], pair, omega)
+        turning = whirl(frequencies.vectors[:, mode], pair, omega)
         assert turning.name == name
-        frequency = float(found.values[mode].imag)
+        frequency = float(frequencies.values[mode].imag)
         rotating = in_rotor(frequency, omega, name)
         assert abs(rotating / (2 * np.pi) - 0.8) < 0.02
         assert in_ground(rotating, omega, name) == pytest.approx(frequency)
@@ -79,10 +79,10 @@ def test_whirl_of_the_blades_in_both_frames() -> None:
 
 def test_the_exponents_of_a_reversed_rotor_are_the_same_and_its_whirl_is_mirrored() -> None:
     system, _ = linearize(coleman_feingold(-2.4), SHAFT)
-    found = damped(*averaged_exactly(in_multiblade(system, THREE)).mean)
-    np.testing.assert_allclose(found.values.imag / (2 * np.pi), COLEMAN_FEINGOLD[2.4], atol=5e-9)
+    frequencies = damped(*averaged_exactly(in_multiblade(system, THREE)).mean)
+    np.testing.assert_allclose(frequencies.values.imag / (2 * np.pi), COLEMAN_FEINGOLD[2.4], atol=5e-9)
     pair = np.array([[3, 4]])
-    assert [whirl(found.vectors[:, mode], pair, -2.4).name for mode in (2, 4)] == ["backward", "forward"]
+    assert [whirl(frequencies.vectors[:, mode], pair, -2.4).name for mode in (2, 4)] == ["backward", "forward"]
 
 
 def test_ground_resonance() -> None:
@@ -94,10 +94,10 @@ def test_ground_resonance() -> None:
         return in_multiblade(made, FOUR)
 
     roots = hammond_roots(15.0, damping, (SUPPORT[0], 5000.0))
-    found = damped(*averaged_exactly(system(15.0)).mean).values
+    values = damped(*averaged_exactly(system(15.0)).mean).values
     for root in roots:
         value = root if root.imag > 0 else root.conjugate()
-        assert np.abs(found - value).min() < 1e-9 * abs(value)
+        assert np.abs(values - value).min() < 1e-9 * abs(value)
     undamped = hammond_roots(15.0, 0.0, (SUPPORT[0], 0.0))
     assert np.real(undamped).max() > 0.1  # unstable without dampers
 

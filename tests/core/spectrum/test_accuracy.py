@@ -33,8 +33,8 @@ def test_a_step_of_the_bending_stiffness_by_1e8_is_solved() -> None:
     s, EI = np.array([0.0, 5.0, 5.0001, 10.0]), np.array([1e4, 1e4, 1e-4, 1e-4])
     mass = np.repeat(section_mass(1.0, 0.001, 0.002), 4, 0)
     stepped = Blade("stepped", s, section_stiffness(np.full(4, 1e8), 1e4, EI, 2 * EI), mass, np.zeros(4))
-    found = solve.modes(stepped, 10.0, count=2, accuracy=1e-3).frequencies
-    np.testing.assert_allclose(found, [6.201082, 11.192977], rtol=2e-6)
+    frequencies = solve.modes(stepped, 10.0, count=2, accuracy=1e-3).frequencies
+    np.testing.assert_allclose(frequencies, [6.201082, 11.192977], rtol=2e-6)
 
 
 def random_blade(seed: int) -> tuple[Blade, float]:
@@ -74,9 +74,9 @@ def truth(blade: Blade, omega: float, count: int) -> tuple[np.ndarray, np.ndarra
 def test_uncertainties_cover_the_errors_of_random_blades(seed: int) -> None:
     blade, omega = random_blade(seed)
     right, unsure = truth(blade, omega, 5)
-    found = solve.modes(blade, omega, count=5)
-    assert found.uncertainty.max() <= 1e-6
-    assert (np.abs(found.frequencies / right - 1.0) <= found.uncertainty + unsure).all()
+    solution = solve.modes(blade, omega, count=5)
+    assert solution.uncertainty.max() <= 1e-6
+    assert (np.abs(solution.frequencies / right - 1.0) <= solution.uncertainty + unsure).all()
     for elements in (12, 30, 50):
         given = solve.modes(blade, omega, elements, 5)
         np.testing.assert_array_equal(given.frequencies, solve.mesh_modes(blade, omega, elements, 5).frequencies)
@@ -88,9 +88,9 @@ def test_a_cable_like_blade_is_accurate_by_default(EI: float) -> None:
     """The first lag of a cable without bending stiffness is zero; otherwise it depends on the root's boundary layer only."""
     blade = cable(EI)
     right, unsure = truth(blade, 30.0, 3)
-    found = solve.modes(blade, 30.0, count=3)
-    assert found.uncertainty.max() <= 1e-6
-    assert (np.abs(found.frequencies / right - 1.0) <= found.uncertainty + unsure).all()
+    solution = solve.modes(blade, 30.0, count=3)
+    assert solution.uncertainty.max() <= 1e-6
+    assert (np.abs(solution.frequencies / right - 1.0) <= solution.uncertainty + unsure).all()
     given = solve.modes(blade, 30.0, 50, 3)
     assert (np.abs(given.frequencies / right - 1.0) <= given.uncertainty).all()
 
@@ -111,8 +111,8 @@ def test_more_accuracy_takes_more_elements() -> None:
 
 def test_accuracy_out_of_reach_is_reported() -> None:
     with pytest.warns(AccuracyWarning, match=r"relative uncertainty .* exceeds the requested accuracy 1.0e-15"):
-        found = solve.modes(cable(1e3), 30.0, count=1, accuracy=1e-15)
-    assert found.uncertainty.max() > 1e-15
+        solution = solve.modes(cable(1e3), 30.0, count=1, accuracy=1e-15)
+    assert solution.uncertainty.max() > 1e-15
     with pytest.raises(ValueError, match="accuracy: 0"):
         solve.modes(cable(1e3), 30.0, count=2, accuracy=0.0)
 
@@ -134,10 +134,10 @@ def test_rigid_stretch_is_rigid_within_the_uncertainty(omega: float) -> None:
 def test_the_reference_of_a_comparison_is_rigid_too() -> None:
     """Core's converged column of ``verify``: the same frequencies as those of ``modes``."""
     stiff = uniform_blade("inextensible", 10.0, 1.0, EA=np.inf, GJ=1e4, EI_y=1e4, EI_z=2e4, mass=1.0)
-    (found,) = core_solver.converged(stiff, [30.0], Compare(modes=2), ALL_EFFECTS)
-    assert isinstance(found, core_solver.Converged)
+    (result,) = core_solver.converged(stiff, [30.0], Compare(modes=2), ALL_EFFECTS)
+    assert isinstance(result, core_solver.Converged)
     frequencies = solve.modes(stiff, 30.0, count=2).frequencies
-    for one, true in zip(found.modes, frequencies, strict=True):
+    for one, true in zip(result.modes, frequencies, strict=True):
         assert one.estimate is not None
         assert one.estimate.uncertainty is not None
         assert abs(one.estimate.value / true - 1.0) <= one.estimate.uncertainty + 1e-8 < 1e-4
@@ -155,17 +155,17 @@ def test_richardsons_extrapolation_of_a_known_sequence() -> None:
     h = 1.0 / np.array([10.0, 20.0, 40.0])
     for c, d in ((1.0, 0.0), (1.0, 3.0), (-2.0, 5.0)):
         f = (1.0 + c * h**4 + d * h**6)[:, None]
-        found = accuracy.estimate(f, 4)
-        assert abs(found.values[0] - 1.0) <= found.of_values[0] + accuracy.FLOOR < found.of_finest[0]
-        assert abs(f[2, 0] - 1.0) <= found.of_finest[0] < 5 * abs(f[2, 0] - 1.0)
+        estimate = accuracy.estimate(f, 4)
+        assert abs(estimate.values[0] - 1.0) <= estimate.of_values[0] + accuracy.FLOOR < estimate.of_finest[0]
+        assert abs(f[2, 0] - 1.0) <= estimate.of_finest[0] < 5 * abs(f[2, 0] - 1.0)
 
 
 def test_the_theoretical_order_by_chance_does_not_make_the_extrapolation_exact() -> None:
     """Changes by 16 to 1, as of fourth order, of a sequence that then converges faster: half the correction is wrong."""
     c = 1e-8
-    found = accuracy.estimate(1.0 + c * np.array([[0.5 + 255.0], [0.5 + 15.0], [0.5]]), 4)
-    assert abs(found.values[0] - 1.0) == pytest.approx(0.5 * c, rel=1e-6)
-    assert abs(found.values[0] - 1.0) <= found.of_values[0] < found.of_finest[0]
+    estimate = accuracy.estimate(1.0 + c * np.array([[0.5 + 255.0], [0.5 + 15.0], [0.5]]), 4)
+    assert abs(estimate.values[0] - 1.0) == pytest.approx(0.5 * c, rel=1e-6)
+    assert abs(estimate.values[0] - 1.0) <= estimate.of_values[0] < estimate.of_finest[0]
 
 
 def test_the_uncertainty_where_the_order_passes_the_theoretical_one() -> None:
@@ -178,9 +178,9 @@ def test_the_uncertainty_where_the_order_passes_the_theoretical_one() -> None:
 
 @pytest.mark.parametrize("f", [(1.0, 1.5, 1.25), (1.0, 1.1, 1.3)], ids=["alternating", "diverging"])
 def test_the_uncertainty_without_convergence_is_three_times_the_spread(f: tuple[float, ...]) -> None:
-    found = accuracy.estimate(np.array(f)[:, None], 4)
-    assert found.values[0] == f[2]
-    assert found.of_finest[0] == pytest.approx(3 * max(abs(f[1] - f[0]), abs(f[2] - f[1])) / f[2])
+    estimate = accuracy.estimate(np.array(f)[:, None], 4)
+    assert estimate.values[0] == f[2]
+    assert estimate.of_finest[0] == pytest.approx(3 * max(abs(f[1] - f[0]), abs(f[2] - f[1])) / f[2])
 
 
 def test_the_mesh_has_nodes_at_stations_and_is_fine_at_the_root() -> None:

@@ -61,8 +61,8 @@ def test_missing_and_spurious_modes_are_reported(omega: float, count: int) -> No
 @pytest.mark.parametrize("omega", [0.0, 8.0])
 @pytest.mark.parametrize("count", range(1, 8))
 def test_a_count_that_splits_a_double_mode_is_accepted(omega: float, count: int) -> None:
-    found = solve.mesh_modes(ROUND, omega, 20, count).frequencies
-    np.testing.assert_allclose(found, solve.mesh_modes(ROUND, omega, 20, 8).frequencies[:count], rtol=1e-9)
+    frequencies = solve.mesh_modes(ROUND, omega, 20, count).frequencies
+    np.testing.assert_allclose(frequencies, solve.mesh_modes(ROUND, omega, 20, 8).frequencies[:count], rtol=1e-9)
 
 
 @pytest.mark.parametrize(

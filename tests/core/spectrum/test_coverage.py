@@ -57,8 +57,8 @@ def test_a_difference_that_vanishes_by_chance_is_not_trusted() -> None:
     a = (1 / 2**4 - 1 / 4**4) / (1 / 2**6 - 1 / 4**6)
     scale = 1e-3
     f = np.array([[1.0 + scale * (h**4 - 1.001 * a * h**6)] for h in (1.0, 0.5, 0.25)])
-    found = estimate(f, 4)
-    assert abs(found.values[0] - 1.0) <= found.of_values[0]
+    result = estimate(f, 4)
+    assert abs(result.values[0] - 1.0) <= result.of_values[0]
 
 
 def outside(seed: int, accuracy: float, finest: float) -> list[float]:

@@ -13,7 +13,7 @@ pytestmark = pytest.mark.numerical
 def test_a_small_damper_with_large_gyroscopic_forces(big: float) -> None:
     """A small mass on a separate spring and damper: ζ = c/(2 √(k m)), whatever else turns."""
     c, k, m = 3e-3, 1.0, 1e-3
-    found = mb.solve(
+    solution = mb.solve(
         mb.Mechanism(
             (mb.Body("t"), mb.Body("x1"), mb.Body("m", mb.inertia(big)), mb.Body("p", mb.inertia(m))),
             (
@@ -30,9 +30,9 @@ def test_a_small_damper_with_large_gyroscopic_forces(big: float) -> None:
             ),
         )
     )
-    mine = found.leading.index("z.z")
-    assert found.damping[mine] == pytest.approx(c / (2 * np.sqrt(k * m)), rel=1e-9)
-    np.testing.assert_allclose(np.delete(found.damping, mine), 0.0, atol=1e-12)
+    own_answer = solution.leading.index("z.z")
+    assert solution.damping[own_answer] == pytest.approx(c / (2 * np.sqrt(k * m)), rel=1e-9)
+    np.testing.assert_allclose(np.delete(solution.damping, own_answer), 0.0, atol=1e-12)
 
 
 @pytest.mark.parametrize(("stiffness", "damping"), [(5.0, 0.0), (7.0, 0.1), (1e-3, 0.0)])
@@ -43,11 +43,11 @@ def test_a_rigid_motion_is_one_mode_without_damping(stiffness: float, damping: f
         (mb.Joint("r", "revolute", "ground", "a"), mb.Joint("q", "revolute", "a", "b")),
         coordinate_springs=(mb.CoordinateSpring("q.rz", stiffness, damping),),
     )
-    found = mb.solve(m)
+    solution = mb.solve(m)
     ease = 1 / 3 + 1 / 2
-    assert found.values[0] == 0.0
-    assert found.frequencies[1:] == pytest.approx([np.sqrt(stiffness * ease)], rel=1e-9)
-    assert found.damping == pytest.approx([0.0, 0.5 * damping * ease / np.sqrt(stiffness * ease)], abs=1e-12)
+    assert solution.values[0] == 0.0
+    assert solution.frequencies[1:] == pytest.approx([np.sqrt(stiffness * ease)], rel=1e-9)
+    assert solution.damping == pytest.approx([0.0, 0.5 * damping * ease / np.sqrt(stiffness * ease)], abs=1e-12)
 
 
 def test_a_damped_rigid_motion_keeps_its_decay() -> None:
@@ -69,10 +69,10 @@ def test_free_bodies_have_six_undamped_rigid_modes() -> None:
         (mb.Joint("r", "free", "ground", "a"), mb.Joint("q", "revolute", "a", "b", mb.at(x=1.0))),
         coordinate_springs=(mb.CoordinateSpring("q.rz", 5.0),),
     )
-    found = mb.solve(m)
-    assert (found.values[:6] == 0.0).all()
-    assert len(found.values) == 7
-    np.testing.assert_allclose(found.damping, 0.0, atol=1e-12)
+    solution = mb.solve(m)
+    assert (solution.values[:6] == 0.0).all()
+    assert len(solution.values) == 7
+    np.testing.assert_allclose(solution.damping, 0.0, atol=1e-12)
 
 
 def test_a_solver_failure_is_not_reported_as_instability() -> None:

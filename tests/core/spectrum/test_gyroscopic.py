@@ -26,18 +26,18 @@ def shaft(ratio: float = 1.0) -> Blade:
 def test_a_shaft_above_its_critical_speed_has_the_frequencies_of_the_rotating_frame(speed: float) -> None:
     """In inertial axes the frequencies are those at rest, so that they are |ω₀ ∓ Ω| in rotating ones."""
     with pytest.warns(GyroscopicStabilityWarning, match="gyroscopic forces alone"):
-        found = modes(shaft(), speed * CRITICAL, count=4)
+        solution = modes(shaft(), speed * CRITICAL, count=4)
     second = (4.694091132974175 / 1.875104068711961) ** 2
     right = np.sort(np.abs([1 - speed, 1 + speed, second - speed, second + speed]))
-    np.testing.assert_allclose(found.frequencies / CRITICAL, right, rtol=1e-5)
+    np.testing.assert_allclose(solution.frequencies / CRITICAL, right, rtol=1e-5)
 
 
 def test_a_sweep_through_the_critical_speed_continues() -> None:
     with pytest.warns(GyroscopicStabilityWarning):
-        found = [
+        results = [
             m.frequencies[:2] / CRITICAL for m in sweep(shaft(), CRITICAL * np.array([0.5, 0.9, 1.1, 1.5]), count=2)
         ]
-    np.testing.assert_allclose(found, [[0.5, 1.5], [0.1, 1.9], [0.1, 2.1], [0.5, 2.5]], rtol=2e-5)
+    np.testing.assert_allclose(results, [[0.5, 1.5], [0.1, 1.9], [0.1, 2.1], [0.5, 2.5]], rtol=2e-5)
 
 
 def test_a_shaft_between_two_critical_speeds_is_unstable() -> None:

@@ -33,10 +33,10 @@ def exact(x: float) -> np.ndarray:
 
 @pytest.mark.parametrize("x", [1.0, 1e3, 1e6, 1e-6])
 def test_masses_of_different_magnitude(x: float) -> None:
-    found = mb.solve(rank_one(x))
-    error = np.abs(found.frequencies / exact(x) - 1.0)
-    assert (error <= found.uncertainty + 4e-16).all()
-    assert found.uncertainty.max() < 1e-6
+    solution = mb.solve(rank_one(x))
+    error = np.abs(solution.frequencies / exact(x) - 1.0)
+    assert (error <= solution.uncertainty + 4e-16).all()
+    assert solution.uncertainty.max() < 1e-6
 
 
 @pytest.mark.parametrize(
@@ -54,22 +54,22 @@ def test_masses_of_different_magnitude(x: float) -> None:
     ids=["turntable", "unstable", "pendulum", "slider-crank"],
 )
 def test_the_uncertainty_covers_the_error(mechanism: mb.Mechanism, guess: dict[str, float], values: np.ndarray) -> None:
-    found = mb.solve(mechanism, guess)
-    assert (found.uncertainty < 1e-11).all()
+    solution = mb.solve(mechanism, guess)
+    assert (solution.uncertainty < 1e-11).all()
     for value in values[np.isfinite(values)]:
-        k = int(np.abs(found.values - value).argmin())
-        assert abs(found.values[k] - value) <= (found.uncertainty[k] + 1e-15) * abs(value)
+        k = int(np.abs(solution.values - value).argmin())
+        assert abs(solution.values[k] - value) <= (solution.uncertainty[k] + 1e-15) * abs(value)
 
 
 def test_a_free_body_in_a_turning_frame_has_defective_eigenvalues() -> None:
     """A floating ring: its drift has the frequency Ω four times, two of them defective, accurate to 1e-8 only."""
     omega = 1.5
-    found = mb.solve(linkages.ring(omega, 4))
-    near = np.abs(found.frequencies - omega) < 1e-3
+    solution = mb.solve(linkages.ring(omega, 4))
+    near = np.abs(solution.frequencies - omega) < 1e-3
     assert near.sum() == 4
-    assert (np.abs(found.values[near] - 1j * omega) <= found.uncertainty[near] * omega).all()
-    assert 1e-9 < found.uncertainty[near].max() < 1e-4
-    assert (found.uncertainty[~near][2:6] < 1e-9).all()
+    assert (np.abs(solution.values[near] - 1j * omega) <= solution.uncertainty[near] * omega).all()
+    assert 1e-9 < solution.uncertainty[near].max() < 1e-4
+    assert (solution.uncertainty[~near][2:6] < 1e-9).all()
 
 
 def test_the_residual_of_the_eigensolver_is_included(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -124,7 +124,7 @@ def test_massless_bodies_on_elastic_joints_have_no_modes(count: int, rate: float
 def test_a_massless_body_with_a_damper_decays() -> None:
     """Between springs k₁ and k₂ without mass: (k₁ + k₂ + λ c) a = k₂ b, m λ² b = k₂ (a − b)."""
     m, k1, k2, c = 2.0, 3.0, 5.0, 0.1
-    found = mb.solve(
+    solution = mb.solve(
         mb.Mechanism(
             (mb.Body("a"), mb.Body("b", mb.inertia(m))),
             (mb.Joint("p", "prismatic", "ground", "a"), mb.Joint("q", "prismatic", "a", "b")),
@@ -133,7 +133,7 @@ def test_a_massless_body_with_a_damper_decays() -> None:
     )
     roots = np.roots([m * c, m * (k1 + k2), c * k2, k1 * k2])
     expected = sorted(roots[roots.imag >= -1e-12], key=abs)
-    np.testing.assert_allclose(found.values, expected, rtol=1e-12)
+    np.testing.assert_allclose(solution.values, expected, rtol=1e-12)
 
 
 def test_a_free_body_without_mass_is_refused() -> None:

@@ -50,9 +50,9 @@ def solved_in_turn(mesh: Mesh, speeds: Iterable[float], options: Options) -> Ite
 def test_a_sweep_agrees_with_single_speeds(blade) -> None:
     speeds = [0.0, 3.0, 6.0, 7.0, 30.0, 7.0, 7.0]  # also far apart, back, and the same again
     swept = solve.mesh_sweep(blade, speeds, 20, 6)
-    for omega, found in zip(speeds, swept, strict=True):
+    for omega, result in zip(speeds, swept, strict=True):
         alone = solve.chain_modes(discretize(blade, 20), omega, 6)
-        assert (np.abs(found.frequencies / alone.frequencies - 1.0) <= alone.rounding).all()
+        assert (np.abs(result.frequencies / alone.frequencies - 1.0) <= alone.rounding).all()
 
 
 @pytest.mark.numerical

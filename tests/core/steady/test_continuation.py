@@ -37,8 +37,8 @@ def test_a_soft_blade_with_precone_is_solved_at_one_speed(
     precone: float, multiple: float, right: tuple[float, ...]
 ) -> None:
     omega = 0.3516 * multiple
-    found = modes(soft(precone), omega, count=3, accuracy=1e-5)
-    np.testing.assert_allclose(found.frequencies / omega, right, rtol=2e-5)
+    solution = modes(soft(precone), omega, count=3, accuracy=1e-5)
+    np.testing.assert_allclose(solution.frequencies / omega, right, rtol=2e-5)
 
 
 @pytest.mark.parametrize(("ratio", "right"), [(5.0, (0.90843, 1.37673, 2.65916)), (3.0, (0.7763, 1.43908, 2.3497))])
@@ -55,8 +55,8 @@ def test_a_blade_with_precone_on_a_spring_along_it_is_solved_at_one_speed(
         precone=0.15,
         root=np.array([ratio * length * omega**2, *[np.inf] * 5]),
     )
-    found = modes(blade, omega, count=3, accuracy=1e-5, allow_large_strain=True)
-    np.testing.assert_allclose(found.frequencies / omega, right, rtol=1e-5)
+    solution = modes(blade, omega, count=3, accuracy=1e-5, allow_large_strain=True)
+    np.testing.assert_allclose(solution.frequencies / omega, right, rtol=1e-5)
 
 
 def test_a_rod_past_its_largest_speed_is_unstable() -> None:

@@ -102,9 +102,9 @@ def test_a_law_of_time_is_linearised_at_an_instant() -> None:
 
 def test_round_bodies_on_round_supports_are_steady() -> None:
     """A disc that spins on a free joint: nutation |I₃ − I₁| Ω/I₁ more, seen at rest: I₃ Ω/I₁ (Euler)."""
-    found = mb.solve(spinning((4.0, 4.0, 6.0)))
-    assert np.abs(found.frequencies - 6.0 * 6.0 / 4.0).min() < 1e-9
-    assert (found.damping >= -1e-9).all()
+    solution = mb.solve(spinning((4.0, 4.0, 6.0)))
+    assert np.abs(solution.frequencies - 6.0 * 6.0 / 4.0).min() < 1e-9
+    assert (solution.damping >= -1e-9).all()
 
 
 def test_two_motions_that_cancel_are_steady() -> None:

@@ -49,10 +49,10 @@ def test_joint_chains_converge_to_rounding_too(code: Any, module: str, omega: fl
     """The stated rounding of both codes covers the difference of their solutions of one model."""
     pytest.importorskip(module)
     theirs = code.solve(CONED, omega, 10, 6)
-    mine = solve.modes(CONED, omega, 10, 6, mass="half_end", stiffness="body_fixed")
-    difference = np.abs(theirs.frequencies / mine.frequencies - 1.0)
-    assert (difference <= mine.rounding + theirs.rounding + 1e-12).all()
-    assert (mine.rounding < 1e-7).all()
+    solution = solve.modes(CONED, omega, 10, 6, mass="half_end", stiffness="body_fixed")
+    difference = np.abs(theirs.frequencies / solution.frequencies - 1.0)
+    assert (difference <= solution.rounding + theirs.rounding + 1e-12).all()
+    assert (solution.rounding < 1e-7).all()
     assert (theirs.rounding < 1e-11).all()
 
 

@@ -33,9 +33,9 @@ def test_another_state_is_detected() -> None:
     """A pendulum that hangs to one side, and one that stands on its head."""
     mechanism, guess = CASES["pendulum, conical"]()
     tree = compile_tree(at_time(mechanism, 0.0))
-    there = equilibrium.steady(tree, guess)
+    state = equilibrium.steady(tree, guess)
     with pytest.raises(AssertionError, match="another state"):
-        guesses.assert_same(tree, {"swing.rz": math.pi}, there, [100])
+        guesses.assert_same(tree, {"swing.rz": math.pi}, state, [100])
 
 
 def pendulums() -> mb.Mechanism:
@@ -49,8 +49,8 @@ def pendulums() -> mb.Mechanism:
 def test_relaxation_does_not_end_at_an_unstable_equilibrium(stands: float, ends: bool) -> None:
     """One pendulum falls from 1.2 rad while the other hangs or stands on its head."""
     tree = compile_tree(pendulums())
-    found = relaxed(tree, assemble(tree, {"of one.rz": 1.2, "of other.rz": stands}))
-    assert (found is not None) == ends
+    result = relaxed(tree, assemble(tree, {"of one.rz": 1.2, "of other.rz": stands}))
+    assert (result is not None) == ends
 
 
 def test_without_a_state_near_the_guess_the_one_elsewhere_is_named(monkeypatch: pytest.MonkeyPatch) -> None:

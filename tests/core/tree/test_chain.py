@@ -28,11 +28,11 @@ def planes(blade, omega, elements, count=6, **options) -> tuple[np.ndarray, np.n
 
 def test_the_papers_table_digit_for_digit() -> None:
     """Park et al. 2010, Table 1, Present: 50 elements, point masses, stiffness linear in the parent's frame."""
-    found = planes(PARK, 10.0, 50, mass="half_end", stiffness="body_fixed", effects=Effects(rotary_inertia=False))[0][
+    result = planes(PARK, 10.0, 50, mass="half_end", stiffness="body_fixed", effects=Effects(rotary_inertia=False))[0][
         :3
     ]
-    assert [f"{f:.4f}" for f in found] == ["11.7058", "70.3722", "189.6735"]
-    assert [f"{f:.4g}" for f in found] == ["11.71", "70.37", "189.7"]
+    assert [f"{f:.4f}" for f in result] == ["11.7058", "70.3722", "189.6735"]
+    assert [f"{f:.4g}" for f in result] == ["11.71", "70.37", "189.7"]
 
 
 def test_consistent_mass_reaches_the_exact_values() -> None:
@@ -95,9 +95,9 @@ def test_many_elements_lose_no_digits_at_rest(elements: int) -> None:
         [brentq(lambda b: np.cos(b) + 1.0 / np.cosh(b), c - 0.3, c + 0.3, xtol=1e-15) for c in (1.9, 4.7, 7.9)]
     )
     exact = np.sort(np.outer(np.sqrt([1e6 / 10.0, 4e6 / 10.0]), (beta / 10.0) ** 2).ravel())[:4]
-    found = chain_modes(discretize(blade, elements), 0.0, 4)
-    assert (np.abs(found.frequencies / exact - 1.0) <= found.rounding).all()
-    assert found.rounding.max() < 1e-12
+    solution = chain_modes(discretize(blade, elements), 0.0, 4)
+    assert (np.abs(solution.frequencies / exact - 1.0) <= solution.rounding).all()
+    assert solution.rounding.max() < 1e-12
 
 
 @pytest.mark.nightly
@@ -114,8 +114,8 @@ def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
     """A basis of hundreds of vectors in a semi-definite product must not drift: Lanczos against LAPACK."""
     body = discretize(yoo_shin(0.0), 40, "half_end", "body_fixed")
     dense = modal.modes(modal.linearize(mechanism(body, 2.0)), count).frequencies
-    found = mesh_modes(yoo_shin(0.0), 2.0, 40, count, mass="half_end", stiffness="body_fixed").frequencies
-    np.testing.assert_allclose(found, dense, rtol=1e-9)
+    frequencies = mesh_modes(yoo_shin(0.0), 2.0, 40, count, mass="half_end", stiffness="body_fixed").frequencies
+    np.testing.assert_allclose(frequencies, dense, rtol=1e-9)
 
 
 def test_stages_agree_between_the_paths() -> None:
@@ -137,10 +137,10 @@ def test_stages_agree_between_the_paths() -> None:
 def test_undamped_modes_have_no_real_part() -> None:
     """The same pencil through the general complex solver: λ on the imaginary axis to rounding."""
     dense = modal.linearize(mechanism(discretize(PARK, 10), 10.0))
-    found = eigen.damped(dense.M, dense.C, dense.K, 6)
+    frequencies = eigen.damped(dense.M, dense.C, dense.K, 6)
     lowest = eigen.gyroscopic(dense.M, dense.C, dense.K, 6).frequencies
-    np.testing.assert_allclose(found.values.imag, lowest, rtol=1e-9)
-    assert np.abs(found.values.real).max() < 1e-8 * lowest[-1]
+    np.testing.assert_allclose(frequencies.values.imag, lowest, rtol=1e-9)
+    assert np.abs(frequencies.values.real).max() < 1e-8 * lowest[-1]
 
 
 def test_degenerate_pairs_at_rest_are_both_found() -> None:
@@ -159,8 +159,8 @@ def test_without_geometric_stiffness_the_first_edgewise_mode_collapses() -> None
 
 def test_linear_theory_without_prestretch_is_yoo_and_shins() -> None:
     """α = 70, δ = 0, γ = 10: 4.9700, 32.0456, 73.9131 printed (Yoo and Shin 1998; the last digit of the third truncated)."""
-    found = planes(yoo_shin(0.0), 10.0, 60, effects=Effects(prestretch=False))[0]
-    np.testing.assert_allclose(found[:3], [4.9700, 32.0456, 73.9131], atol=1e-4)
+    result = planes(yoo_shin(0.0), 10.0, 60, effects=Effects(prestretch=False))[0]
+    np.testing.assert_allclose(result[:3], [4.9700, 32.0456, 73.9131], atol=1e-4)
 
 
 def test_no_coriolis_in_the_flapwise_plane_but_much_edgewise() -> None:
@@ -181,9 +181,9 @@ def test_no_steady_state_beyond_the_axial_critical_speed() -> None:
 @pytest.mark.parametrize("speeds", [(0.0, 1.0, 2.0, 3.0, 4.0), (4.0, 0.0, 4.0, -4.0)], ids=["rising", "back and forth"])
 def test_a_sweep_agrees_with_single_speeds(speeds) -> None:
     """Extrapolated guesses lead Newton to the same states, in any order of the speeds."""
-    found = [m.frequencies for m in sweep(curved(), speeds, 12, 6)]
+    results = [m.frequencies for m in sweep(curved(), speeds, 12, 6)]
     alone = [mesh_modes(curved(), omega, 12, 6).frequencies for omega in speeds]
-    np.testing.assert_allclose(found, alone, rtol=1e-10)
+    np.testing.assert_allclose(results, alone, rtol=1e-10)
 
 
 def test_gravity_prestresses_by_azimuth() -> None:
@@ -216,9 +216,9 @@ def test_bad_arguments_are_named(arguments, match) -> None:
 def test_a_shape_carried_over_to_a_finer_mesh_is_a_close_guess() -> None:
     """Within 1 % of the displacement; at nodes that the meshes share, it is the same."""
     coarse, fine = (discretize(curved(), n) for n in (8, 16))
-    there = steady.steady(coarse, 4.0, np.zeros(3)).shape
-    guess = steady.carried_over(coarse, there, fine)
-    found = steady.steady(fine, 4.0, np.zeros(3)).shape
-    moved = np.abs(found.nodes - fine.nodes).max()
-    assert np.abs(guess.nodes - found.nodes).max() < 0.01 * moved
-    np.testing.assert_allclose(guess.nodes[::2], there.nodes, atol=1e-12)
+    elsewhere = steady.steady(coarse, 4.0, np.zeros(3)).shape
+    guess = steady.carried_over(coarse, elsewhere, fine)
+    result = steady.steady(fine, 4.0, np.zeros(3)).shape
+    moved = np.abs(result.nodes - fine.nodes).max()
+    assert np.abs(guess.nodes - result.nodes).max() < 0.01 * moved
+    np.testing.assert_allclose(guess.nodes[::2], elsewhere.nodes, atol=1e-12)

@@ -30,8 +30,8 @@ def test_logarithm_near_half_a_turn(short: float) -> None:
 
 @pytest.mark.parametrize("axis", np.eye(3), ids="xyz")
 def test_logarithm_of_half_a_turn_about_a_coordinate_axis(axis: np.ndarray) -> None:
-    found = sp.log(sp.pose(2.0 * np.outer(axis, axis) - np.eye(3), np.zeros(3))[None])[0]
-    np.testing.assert_allclose(np.abs(found), [0, 0, 0, *(np.pi * axis)], atol=1e-15)
+    result = sp.log(sp.pose(2.0 * np.outer(axis, axis) - np.eye(3), np.zeros(3))[None])[0]
+    np.testing.assert_allclose(np.abs(result), [0, 0, 0, *(np.pi * axis)], atol=1e-15)
 
 
 def bar(name: str, length: float, mass: float) -> mb.Body:

@@ -23,14 +23,14 @@ def reduced_residual(linear: modal.Linearization, dq: np.ndarray, dv: np.ndarray
     """Rᵀτ of the exact equations with the independent coordinates moved: loops closed again, with rates and accelerations."""
     tree, state, part = linear.tree, linear.state, linear.partition
     q, v, a = state.q.copy(), state.v.copy(), state.a.copy()
-    mine, others = part.independent, part.dependent
-    q[mine] += dq
+    own_answer, others = part.independent, part.dependent
+    q[own_answer] += dq
     for _ in range(30):
         x, J = poses(tree, q)
         gap = partition.misfit(tree, x)
         q[others] -= np.linalg.pinv(partition.jacobian(tree, transformation(tree, J))[:, others]) @ gap
-    v[mine] += dv
-    a[mine] += da
+    v[own_answer] += dv
+    a[own_answer] += da
     v[others] = a[others] = 0.0
     k = kinematics(tree, q, v, a)
     J = partition.jacobian(tree, k.B)
@@ -40,7 +40,7 @@ def reduced_residual(linear: modal.Linearization, dq: np.ndarray, dv: np.ndarray
     a[others] = -back @ (J @ a + partition.jacobian(tree, k.B1) @ v)
     k = kinematics(tree, q, v, a)
     c = dynamics.cartesian(tree, k)
-    names = tuple(tree.coordinates[j] for j in mine)
+    names = tuple(tree.coordinates[j] for j in own_answer)
     R = partition.partition(tree, k, names).R
     return R.T @ dynamics.unbalanced(tree, k, c, q, v)[part.free]
 

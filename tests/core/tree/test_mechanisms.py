@@ -38,9 +38,9 @@ def frequencies(mechanism: Mechanism, guess=None, **options) -> np.ndarray:
 
 def damped(mechanism: Mechanism, guess=None) -> eigen.Damped:
     """The modes of a mechanism that needs the damped eigenvalue solver."""
-    found = modal.modes(modal.linearize(mechanism, guess))
-    assert isinstance(found, eigen.Damped)
-    return found
+    solution = modal.modes(modal.linearize(mechanism, guess))
+    assert isinstance(solution, eigen.Damped)
+    return solution
 
 
 # --- pendulums -------------------------------------------------------------------------------------------------------
@@ -86,10 +86,10 @@ def test_conical_pendulum_about_its_steady_cone(prescribed: bool) -> None:
     linear = modal.linearize(m, {"swing.rz": -1.0})
     assert np.cos(linear.state.q[1]) == pytest.approx(cosine, rel=1e-12)
     expected = omega * (np.sqrt(1 - cosine**2) if prescribed else np.sqrt(1 + 3 * cosine**2))
-    found = modal.modes(linear).frequencies
-    assert found[-1] == pytest.approx(expected, rel=1e-9)
+    result = modal.modes(linear).frequencies
+    assert result[-1] == pytest.approx(expected, rel=1e-9)
     if not prescribed:  # the azimuth itself: a zero (double) root
-        assert np.abs(found[:-1]).max() < 1e-5 * expected
+        assert np.abs(result[:-1]).max() < 1e-5 * expected
 
 
 # --- rotating tables -------------------------------------------------------------------------------------------------
@@ -123,8 +123,8 @@ def test_a_rotating_table_loses_stability_between_its_critical_speeds() -> None:
     """For √(kx/m) < Ω < √(ky/m) one branch grows without oscillating; on either side nothing grows."""
     kx, ky, m = 50.0, 98.0, 2.0
     for omega, stable in ((4.99, True), (5.01, False), (6.99, False), (7.01, True)):
-        found = modal.modes(modal.linearize(turntable(omega, kx, ky)))
-        worst = getattr(found, "values", np.zeros(1)).real.max()
+        solution = modal.modes(modal.linearize(turntable(omega, kx, ky)))
+        worst = getattr(solution, "values", np.zeros(1)).real.max()
         assert (worst < 1e-6) == stable, omega
     grows = damped(turntable(6.0, kx, ky)).values.real.max()
     a, b = kx / m - 36.0, ky / m - 36.0
@@ -238,13 +238,13 @@ def test_frequencies_do_not_depend_on_the_cut(cut: str, turning) -> None:
 
 @pytest.mark.parametrize("name", ["A.rz", "B.rz", "C.rz", "D.rz"])
 def test_frequencies_do_not_depend_on_the_independent_coordinate(name: str, turning) -> None:
-    found = frequencies(four_bar("C", table_rate=1.5), guess(), independent=(name,))
-    np.testing.assert_allclose(found, turning, rtol=1e-10)
+    result = frequencies(four_bar("C", table_rate=1.5), guess(), independent=(name,))
+    np.testing.assert_allclose(result, turning, rtol=1e-10)
 
 
 def test_frequencies_do_not_depend_on_numbering(turning) -> None:
-    found = frequencies(four_bar("", order=(3, 2, 0, 1), table_rate=1.5), guess())
-    np.testing.assert_allclose(found, turning, rtol=1e-10)
+    result = frequencies(four_bar("", order=(3, 2, 0, 1), table_rate=1.5), guess())
+    np.testing.assert_allclose(result, turning, rtol=1e-10)
 
 
 def test_frequencies_do_not_depend_on_a_rigid_rotation(turning) -> None:
@@ -283,8 +283,8 @@ R, EI, MU = 1.0, 2.0, 0.5  # the ring's
 def test_closed_ring_of_beams(omega: float) -> None:
     """p = n [±(n²−1) √(Ω² + (n²+1) EI/(μR⁴)) − 2Ω]/(n²+1), in-plane, inextensional, in the rotating frame (Carrier 1945)."""
     linear = modal.linearize(ring(omega, 24))
-    found = modal.modes(linear)
-    values = found.values.imag if isinstance(found, eigen.Damped) else found.frequencies
+    solution = modal.modes(linear)
+    values = solution.values.imag if isinstance(solution, eigen.Damped) else solution.frequencies
     for n in (2, 3):
         root = (n**2 - 1) * np.sqrt(omega**2 + (n**2 + 1) * EI / (MU * R**4))
         for sign in (1, -1):
@@ -306,7 +306,7 @@ def test_portal_frame_on_a_rotating_table() -> None:
         (Motion("turn.rz", 0.0, omega),),
         beams=tuple(Beam("table", "girder", beam, at_a=f, at_b=g) for f, g in zip(feet, heads, strict=True)),
     )
-    found = frequencies(m)
+    result = frequencies(m)
     # in the frame's plane the columns are clamped at both ends; across it the girder rocks on the tips of two cantilevers
     K, M, C = np.zeros((3, 3)), np.diag([mass, mass, 500.0]), np.zeros((3, 3))
     K[0, 0] = 24 * ei / h**3
@@ -315,7 +315,7 @@ def test_portal_frame_on_a_rotating_table() -> None:
     C[0, 1], C[1, 0] = -2 * mass * omega, 2 * mass * omega
     expected = eigen.damped(M, C, K).values.imag
     for e in expected[:2]:
-        assert np.abs(found / e - 1).min() < 3e-3, (e, found)
+        assert np.abs(result / e - 1).min() < 3e-3, (e, result)
 
 
 # --- springs, dampers, invariance ------------------------------------------------------------------------------------
@@ -332,9 +332,9 @@ def test_spring_damper_between_points() -> None:
         springs=(Spring("ground", "mass", np.zeros(3), np.zeros(3), k, c, 1.0),),
         gravity=(0, -G, 0),
     )
-    found = damped(hung, {"loose.y": -1.2})
-    np.testing.assert_allclose(found.frequencies, [np.sqrt(G / stretched), np.sqrt(k / m)], rtol=1e-9)
-    np.testing.assert_allclose(found.damping, [0.0, c / (2 * np.sqrt(k * m))], atol=1e-9)
+    result = damped(hung, {"loose.y": -1.2})
+    np.testing.assert_allclose(result.frequencies, [np.sqrt(G / stretched), np.sqrt(k / m)], rtol=1e-9)
+    np.testing.assert_allclose(result.damping, [0.0, c / (2 * np.sqrt(k * m))], atol=1e-9)
 
 
 def test_point_spring_tangents_match_difference_quotients() -> None:
@@ -375,11 +375,11 @@ def test_the_hubs_zero_mode_when_its_speed_is_free() -> None:
     free = Mechanism(
         clamped.bodies, clamped.joints, (Motion("hub.rz", 0.0, 10.0, prescribed=False),), beams=clamped.beams
     )
-    found = np.sort(modal.modes(modal.linearize(free)).frequencies)
-    assert found[0] < 1e-4
+    result = np.sort(modal.modes(modal.linearize(free)).frequencies)
+    assert result[0] < 1e-4
     # flapwise modes are unaffected; the first edgewise mode of a blade free to turn is that of a pinned beam, far above
     flapwise = frequencies(clamped)
-    assert np.abs(found / flapwise[1] - 1).min() < 1e-6
+    assert np.abs(result / flapwise[1] - 1).min() < 1e-6
 
 
 def test_a_coordinate_without_equilibrium_is_named() -> None:

@@ -36,16 +36,16 @@ def test_a_rigid_articulated_blade(mass) -> None:
     flap, lag = 10 * np.sqrt(1 + e), 10 * np.sqrt(e)
     tolerance = 1e-5 if mass == "consistent" else 2e-3  # half the first element's mass sits on the hinge
     for root, expected in ((FLAP, [flap]), (LAG, [lag]), (BOTH, [lag, flap])):
-        found = mesh_modes(rod(root), 10.0, 40, len(expected), mass=mass).frequencies
-        np.testing.assert_allclose(found, expected, rtol=tolerance)
+        frequencies = mesh_modes(rod(root), 10.0, 40, len(expected), mass=mass).frequencies
+        np.testing.assert_allclose(frequencies, expected, rtol=tolerance)
 
 
 def test_a_cable_flaps_at_the_roots_of_legendres_equation() -> None:
     """Ω √(k(2k − 1)): 1, √6, √15 for a rotating cable without stiffness (Lamb and Southwell 1921)."""
     cable = uniform_blade("cable", 6.0, 0.0, EA=2.8e7, GJ=1.0, EI_y=0.05, EI_z=1e7, mass=1.2)
-    found = mesh_modes(on(cable, FLAP), 10.0, 120, 3)
+    solution = mesh_modes(on(cable, FLAP), 10.0, 120, 3)
     k = np.arange(1, 4)
-    np.testing.assert_allclose(found.frequencies, 10 * np.sqrt(k * (2 * k - 1)), rtol=1e-4)
+    np.testing.assert_allclose(solution.frequencies, 10 * np.sqrt(k * (2 * k - 1)), rtol=1e-4)
 
 
 def test_springs_agree_with_the_finite_element_beam() -> None:

@@ -65,8 +65,8 @@ def test_a_beam_that_is_held_folded_is_refused() -> None:
 
 
 def test_the_strain_of_a_hanging_beam_is_mg_over_ea() -> None:
-    found = mb.solve(hanging(1e5))
-    assert found.strain == pytest.approx(98.1 / 1e5, rel=1e-9)
+    solution = mb.solve(hanging(1e5))
+    assert solution.strain == pytest.approx(98.1 / 1e5, rel=1e-9)
 
 
 def test_large_strains_are_refused_unless_allowed() -> None:

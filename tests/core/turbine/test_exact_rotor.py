@@ -80,10 +80,10 @@ def frequencies(elements: int) -> np.ndarray:
 
 def test_a_rotor_of_uniform_blades_on_a_hub() -> None:
     coarse, fine = frequencies(30), frequencies(60)
-    known = []
+    expected = []
     for motion, roots in ROOTS.items():
         for near in roots:
-            known.append(brentq(partial(unbalanced, motion), near * (1 - 1e-7), near * (1 + 1e-7), xtol=1e-12))
-    exact = np.sort(np.array(known, float))
+            expected.append(brentq(partial(unbalanced, motion), near * (1 - 1e-7), near * (1 + 1e-7), xtol=1e-12))
+    exact = np.sort(np.array(expected, float))
     np.testing.assert_allclose(fine, exact, rtol=4e-7)
     np.testing.assert_allclose(fine + (fine - coarse) / 15.0, exact, rtol=3e-9)  # the error is of fourth order

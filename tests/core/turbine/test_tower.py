@@ -38,11 +38,11 @@ def base() -> np.ndarray:
 
 def test_names_and_uncertainty_of_a_clamped_tower() -> None:
     """β² = 3.5160 and 22.0345 of a cantilever (Rao, *Mechanical Vibrations*)."""
-    found = tower_modes(Tower(beam()), 4)
-    assert found.names == ("1st fore-aft", "1st side-side", "2nd fore-aft", "2nd side-side")
+    solution = tower_modes(Tower(beam()), 4)
+    assert solution.names == ("1st fore-aft", "1st side-side", "2nd fore-aft", "2nd side-side")
     unit = np.sqrt(EI / (MASS * LENGTH**4))
-    np.testing.assert_allclose(found.frequencies[[0, 2]], [3.51601527 * unit, 22.0344916 * unit], rtol=2e-5)
-    assert found.uncertainty.max() < 1e-7
+    np.testing.assert_allclose(solution.frequencies[[0, 2]], [3.51601527 * unit, 22.0344916 * unit], rtol=2e-5)
+    assert solution.uncertainty.max() < 1e-7
 
 
 def test_soil_along_the_tower_adds_to_every_square() -> None:
@@ -50,8 +50,8 @@ def test_soil_along_the_tower_adds_to_every_square() -> None:
     k = 5e4
     free = tower_modes(Tower(beam()), 4).frequencies
     soil = Support(soil=np.array([[0.0, k], [7.0, k], [LENGTH, k]]))
-    found = tower_modes(Tower(beam(), soil), 4).frequencies
-    np.testing.assert_allclose(found, np.sqrt(free**2 + k / MASS), rtol=1e-10)
+    frequencies = tower_modes(Tower(beam(), soil), 4).frequencies
+    np.testing.assert_allclose(frequencies, np.sqrt(free**2 + k / MASS), rtol=1e-10)
 
 
 def test_soil_in_a_part_of_the_tower_is_the_limit_of_many_springs() -> None:
@@ -83,16 +83,16 @@ def test_a_body_on_an_elastic_base_has_six_frequencies() -> None:
     tower = rigid()
     M = mb.inertia(500.0, (900.0, 700.0, 800.0), (LENGTH, 0.0, 0.0))
     exact = np.sqrt(eigh(base(), M, eigvals_only=True))
-    found = tower_modes(Tower(tower, Support(base=base())), 6).frequencies
-    np.testing.assert_allclose(found, exact, rtol=1e-5)
+    frequencies = tower_modes(Tower(tower, Support(base=base())), 6).frequencies
+    np.testing.assert_allclose(frequencies, exact, rtol=1e-5)
 
 
 def test_weight_makes_a_body_on_an_elastic_base_tip_over() -> None:
     """K_g = −m g h of the two tilts: an inverted pendulum on springs."""
     K, g = np.diag([np.inf, np.inf, np.inf, np.inf, 3e5, 2e5]), 9.81
-    found = tower_modes(Tower(rigid(mb.inertia(500.0)), Support(base=K), g), 2).frequencies
+    frequencies = tower_modes(Tower(rigid(mb.inertia(500.0)), Support(base=K), g), 2).frequencies
     exact = np.sqrt((np.array([2e5, 3e5]) - 500.0 * g * LENGTH) / (500.0 * LENGTH**2))
-    np.testing.assert_allclose(found, exact, rtol=1e-4)
+    np.testing.assert_allclose(frequencies, exact, rtol=1e-4)
 
 
 def test_weight_leaves_the_motions_of_a_coupled_base_but_tilts() -> None:
@@ -100,8 +100,8 @@ def test_weight_leaves_the_motions_of_a_coupled_base_but_tilts() -> None:
     M, g = mb.inertia(500.0, (900.0, 700.0, 800.0), (LENGTH, 0.0, 0.0)), 9.81
     K = base() - 500.0 * g * LENGTH * np.diag([0.0, 0.0, 0.0, 0.0, 1.0, 1.0])
     floater = mb.inertia(2000.0, (3e3, 2e3, 2e3), (-1.0, 0.2, 0.1))
-    found = tower_modes(Tower(rigid(), Support(base=base(), mass=floater), g), 6).frequencies
-    np.testing.assert_allclose(found, np.sqrt(eigh(K, M + floater, eigvals_only=True)), rtol=1e-5)
+    frequencies = tower_modes(Tower(rigid(), Support(base=base(), mass=floater), g), 6).frequencies
+    np.testing.assert_allclose(frequencies, np.sqrt(eigh(K, M + floater, eigvals_only=True)), rtol=1e-5)
 
 
 def test_joints_in_series_have_the_stiffness_of_the_base() -> None:
@@ -199,8 +199,8 @@ def test_bmodes_certification(
         (part * HEIGHT, 1.5 * k * np.cos(np.radians(angle)) ** 2 * np.diag([0, 1, 1, 0, 0, 0]))
         for part, k, angle in wires
     )
-    found = tower_modes(Tower(bmodes_tower(factor), Support(springs=springs)), len(printed))
-    difference = found.frequencies / (2 * np.pi) / np.array(printed) - 1
+    solution = tower_modes(Tower(bmodes_tower(factor), Support(springs=springs)), len(printed))
+    difference = solution.frequencies / (2 * np.pi) / np.array(printed) - 1
     assert (difference < 2e-5).all()
     assert (difference > -2.1e-3).all()
-    assert found.names[:3] == ("1st side-side", "1st fore-aft", "1st torsion")
+    assert solution.names[:3] == ("1st side-side", "1st fore-aft", "1st torsion")

@@ -94,8 +94,8 @@ def test_names_and_tracking() -> None:
 
 def test_whirl_of_a_reversed_rotor_has_the_same_frequencies() -> None:
     made = machine(replace(small(), blade=replace(small().blade, pitch=0.0)), SMALL)
-    there, back = turbine_modes(made, OMEGA, 8), turbine_modes(made, -OMEGA, 8)
-    flap = {n: f for n, f in zip(there.names, there.frequencies, strict=True) if "1st flap" in n}
+    solution, back = turbine_modes(made, OMEGA, 8), turbine_modes(made, -OMEGA, 8)
+    flap = {n: f for n, f in zip(solution.names, solution.frequencies, strict=True) if "1st flap" in n}
     again = {n: f for n, f in zip(back.names, back.frequencies, strict=True) if "1st flap" in n}
     assert flap.keys() == again.keys()
     for name, value in flap.items():
@@ -182,8 +182,8 @@ def test_tower_with_a_tip_body() -> None:
         return 1.0 + c * ch + tip / (mass * length) * b * (c * sh - s * ch)
 
     exact = (cast(float, brentq(equation, 0.5, 1.8)) / length) ** 2 * np.sqrt(EI / mass)
-    found = solve.modes(tower, 0.0, count=2, accuracy=1e-7).frequencies
-    np.testing.assert_allclose(found, exact, rtol=1e-6)
+    frequencies = solve.modes(tower, 0.0, count=2, accuracy=1e-7).frequencies
+    np.testing.assert_allclose(frequencies, exact, rtol=1e-6)
 
 
 def test_tower_under_the_weight_of_its_tip() -> None:
@@ -194,8 +194,8 @@ def test_tower_under_the_weight_of_its_tip() -> None:
     P = tip * g
     wave = np.sqrt(P / EI)
     exact = np.sqrt(P * wave / (np.tan(wave * length) - wave * length) / tip)
-    found = solve.modes(tower, 0.0, count=2, gravity=np.array([-g, 0.0, 0.0])).frequencies
-    np.testing.assert_allclose(found, exact, rtol=2e-5)
+    frequencies = solve.modes(tower, 0.0, count=2, gravity=np.array([-g, 0.0, 0.0])).frequencies
+    np.testing.assert_allclose(frequencies, exact, rtol=2e-5)
 
 
 def test_default_resolution_is_converged() -> None:
@@ -224,9 +224,9 @@ def test_torsion_of_a_shaft_between_rotor_and_generator() -> None:
     )
     made = machine(stiff, SMALL)
     inertia = tb.rigid_rotor(stiff, made.blade_mesh)[5, 5]
-    found = turbine_modes(made, 0.0, 1)
-    assert found.names == ("drivetrain torsion",)
-    assert found.frequencies[0] == pytest.approx(np.sqrt(k * (1 / inertia + 1 / (ratio**2 * J))), rel=1e-4)
+    solution = turbine_modes(made, 0.0, 1)
+    assert solution.names == ("drivetrain torsion",)
+    assert solution.frequencies[0] == pytest.approx(np.sqrt(k * (1 / inertia + 1 / (ratio**2 * J))), rel=1e-4)
 
 
 def wrong_nacelle(turbine: tb.Turbine) -> tb.Turbine:
