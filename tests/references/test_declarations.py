@@ -33,23 +33,23 @@ def imports(module: str) -> set[str]:
 
 def modules(name: str) -> set[str]:
     """Modules of the package, except those of the protocol and of descriptions of mechanisms, that an adapter imports."""
-    found: set[str] = set()
+    result: set[str] = set()
     todo = {registry.locate(name).partition(":")[0]}
     while todo:
-        found |= todo
+        result |= todo
         todo = {
             other
             for module in todo
             for other in imports(module)
             if not other.startswith(("southwell.references.protocol", "southwell.core"))
-        } - found
-    return found
+        } - result
+    return result
 
 
 def imported_of_core(name: str) -> set[str]:
     """Parts of core that the modules of an adapter import: names of its modules and folders."""
-    found = {other for module in modules(name) for other in imports(module)}
-    return {other.split(".")[2] for other in found if other.startswith("southwell.core.")}
+    result = {other for module in modules(name) for other in imports(module)}
+    return {other.split(".")[2] for other in result if other.startswith("southwell.core.")}
 
 
 @pytest.mark.parametrize("name", BLADE_CODES)

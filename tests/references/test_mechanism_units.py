@@ -43,6 +43,6 @@ def test_a_mass_slides_to_the_end_of_a_spring_of_any_length(code, metres: float)
         coordinate_springs=(mb.CoordinateSpring("rail.z", 50.0, 0.0, 1.0),),
         gravity=(0.0, 0.0, -9.81),
     )
-    found = code.mechanism_modes(*in_other_units((mechanism, {}), Units(length=1.0 / metres)))
-    assert found.steady == pytest.approx([metres * (1.0 - 2.0 * 9.81 / 50.0)], rel=1e-9)
-    assert np.abs(found.values) == pytest.approx([5.0], rel=1e-9)
+    solution = code.mechanism_modes(*in_other_units((mechanism, {}), Units(length=1.0 / metres)))
+    assert solution.steady == pytest.approx([metres * (1.0 - 2.0 * 9.81 / 50.0)], rel=1e-9)
+    assert np.abs(solution.values) == pytest.approx([5.0], rel=1e-9)

@@ -36,15 +36,17 @@ def main():
     print("both free:", np.round(both, 6))
     print("second fixed, expected: [-0.2-1.989975j -0.2+1.989975j]")
     try:
-        found = mbs.ComputeODE2Eigenvalues(
+        result = mbs.ComputeODE2Eigenvalues(
             computeComplexEigenvalues=True, useAbsoluteValues=False, constrainedCoordinates=[1]
         )[0]
     except ValueError as error:
         print(f"second fixed: ValueError: {error}")
         print("defect: present")
     else:
-        print("second fixed:", np.round(found, 6))
-        right = len(found) == 2 and np.allclose(np.sort_complex(found), [-0.2 - 1.989975j, -0.2 + 1.989975j], atol=1e-5)
+        print("second fixed:", np.round(result, 6))
+        right = len(result) == 2 and np.allclose(
+            np.sort_complex(result), [-0.2 - 1.989975j, -0.2 + 1.989975j], atol=1e-5
+        )
         print("defect:", "gone" if right else "present")
 
 

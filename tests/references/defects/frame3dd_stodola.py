@@ -18,9 +18,9 @@ def main():
     expected = np.sort(np.append(EULER, np.sqrt(RATIO) * EULER))[:4]
     print(f"expected:           {np.round(expected, 3)} rad/s", file=own)
     for method in METHODS:
-        found = frequencies(method, 40, EA, RATIO)
-        print(f"{method:19} {np.round(found, 3)} rad/s", file=own)
-    print("defect:", "present" if np.abs(found / expected - 1).max() > 0.01 else "gone", file=own)
+        result = frequencies(method, 40, EA, RATIO)
+        print(f"{method:19} {np.round(result, 3)} rad/s", file=own)
+    print("defect:", "present" if np.abs(result / expected - 1).max() > 0.01 else "gone", file=own)
 
 
 if __name__ == "__main__":

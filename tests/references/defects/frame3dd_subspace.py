@@ -21,12 +21,12 @@ def main():
         lost[method] = []
         for elements in sizes:
             try:
-                found = frequencies(method, elements, EA, RATIO)
+                result = frequencies(method, elements, EA, RATIO)
             except RuntimeError as error:
                 lost[method].append(elements)
                 said.add(str(error))
                 continue
-            assert np.abs(found / expected - 1).max() < 2e-3, found
+            assert np.abs(result / expected - 1).max() < 2e-3, result
         print(
             f"{method}: no answer with {lost[method] or 'none'} of {sizes[0]} to {sizes[-1]} elements (expected: none)",
             file=own,

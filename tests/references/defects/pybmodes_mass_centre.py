@@ -93,14 +93,14 @@ def main():
             0,
             0,
         )  # inertia about the axis
-        found = run(lambda path: RotatingBlade(path).run(8, check_model=False).frequencies[:5], RADIUS, row, rpm)
+        result = run(lambda path: RotatingBlade(path).run(8, check_model=False).frequencies[:5], RADIUS, row, rpm)
         expected = Exact(rpm * np.pi / 30, ratio * EI).frequencies()[:5] / (2 * np.pi)
-        off = np.abs(found / expected - 1)
+        off = np.abs(result / expected - 1)
         worst[rpm, ratio] = off.max()
         k = int(off.argmax())
         print(
             f"{rpm:2g} rpm, EI_edge = {ratio:2g} EI_flap: five modes within {off[k]:.2%}, "
-            f"the worst {found[k]:.4f} Hz (expected {expected[k]:.4f})"
+            f"the worst {result[k]:.4f} Hz (expected {expected[k]:.4f})"
         )
     print("defect:", "present" if worst[60.0, 16.0] > 0.01 > 4 * worst[0.0, 16.0] else "gone")
 

@@ -25,8 +25,8 @@ def frequencies(cg, sc, tc):
 def main():
     print(f"pybmodes {version('pybmodes')}")
     expected, moved = frequencies(0.0, 0.0, 0.0), frequencies(0.5, 0.5, 0.5)
-    for k, (found, plain) in enumerate(zip(moved, expected, strict=True)):
-        print(f"mode {k + 1}: {found:.4f} Hz with all centres 0.5 m off the axis (expected {plain:.4f})")
+    for k, (result, plain) in enumerate(zip(moved, expected, strict=True)):
+        print(f"mode {k + 1}: {result:.4f} Hz with all centres 0.5 m off the axis (expected {plain:.4f})")
     print("defect:", "present" if np.abs(moved / expected - 1).max() > 1e-3 else "gone")
 
 

@@ -42,9 +42,9 @@ def main():
         flap = next(
             f for f, s in zip(result.frequencies, result.shapes, strict=True) if np.abs(s.flap_disp).max() > 1e-6
         )
-        found = 2 * np.pi * flap / unit
-        print(f"speed {speed:4g}: {found:.4f} (expected {expected(speed):.4f})")
-        worst = max(worst, abs(found / expected(speed) - 1))
+        computed = 2 * np.pi * flap / unit
+        print(f"speed {speed:4g}: {computed:.4f} (expected {expected(speed):.4f})")
+        worst = max(worst, abs(computed / expected(speed) - 1))
     print("defect:", "present" if worst > 1e-3 else "gone")
 
 

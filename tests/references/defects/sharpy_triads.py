@@ -23,9 +23,9 @@ def main():
     worst = 0.0
     for node, psi, expected in zip(("first end", "other end", "middle"), element.psi_ini, angle, strict=True):
         x = crv2rotation(psi)[:, 0]
-        found = np.arctan2(x[1], x[0])
-        print(f"{node:9}: x at {found:.3f} rad (expected {expected:.3f}, a parabola through three nodes aside)")
-        worst = max(worst, abs(found - expected))
+        result = np.arctan2(x[1], x[0])
+        print(f"{node:9}: x at {result:.3f} rad (expected {expected:.3f}, a parabola through three nodes aside)")
+        worst = max(worst, abs(result - expected))
     print("defect:", "present" if worst > 0.1 else "gone")
 
 

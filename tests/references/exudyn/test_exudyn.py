@@ -192,8 +192,8 @@ REFUSED = {
 
 @pytest.mark.parametrize(("code", "blade", "reason"), REFUSED.values(), ids=REFUSED.keys())
 def test_an_unsupported_blade_is_declined_with_a_reason(code, blade, reason):
-    found = code.unsupported(blade)
-    assert found is not None
+    result = code.unsupported(blade)
+    assert result is not None
     with pytest.raises(CodeError, match=reason):
         code.solve(blade, 1.0, 4, 2)
 

@@ -82,9 +82,9 @@ def assert_agreement(
     ):
         near(name, a, b, tolerance, float(np.abs(again.M).max()))
     # and modes
-    found, answer = mb.solve(mechanism, guess), em.CODE.solve_mechanism(mechanism, guess)
-    largest = np.abs(found.values).max()
-    np.testing.assert_allclose(np.abs(answer.values), found.frequencies, rtol=1e-9, atol=1e-9 * largest)
+    solution, answer = mb.solve(mechanism, guess), em.CODE.solve_mechanism(mechanism, guess)
+    largest = np.abs(solution.values).max()
+    np.testing.assert_allclose(np.abs(answer.values), solution.frequencies, rtol=1e-9, atol=1e-9 * largest)
     return linear, theirs, multipliers
 
 

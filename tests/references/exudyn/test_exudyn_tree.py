@@ -181,15 +181,15 @@ def limit(blade, omega):
 
 def test_the_layer_at_the_root_is_resolved():
     """√(EI/T) is 1/117 of the length: with equal elements the frequencies are 0.013 to 0.015 % off."""
-    found, core = limit(unit(5.0, EA=1e8), 50.0)
-    np.testing.assert_allclose(found, core, rtol=1e-4)
+    result, core = limit(unit(5.0, EA=1e8), 50.0)
+    np.testing.assert_allclose(result, core, rtol=1e-4)
 
 
 @pytest.mark.slow
 def test_a_blade_with_all_properties():
     """Coupled, curved, sheared, twisted, tapered, offset, coned, pitched."""
-    found, core = limit(replace(curved(), precone=0.3), 3.0)
-    np.testing.assert_allclose(found, core, rtol=2e-4)
+    result, core = limit(replace(curved(), precone=0.3), 3.0)
+    np.testing.assert_allclose(result, core, rtol=2e-4)
 
 
 @pytest.mark.slow
@@ -197,15 +197,15 @@ def test_a_blade_with_all_properties():
 def test_a_twisted_blade_with_precone_has_a_steady_state(omega):
     """It needs speed steps: from zero to full speed in one step Newton's method diverges."""
     blade = replace(unit(0.1, EI_z=9.0, EA=1e5, I_y=1e-4, I_z=9e-4), twist=np.array([0.9, 0.0]), precone=0.3)
-    found, core = limit(blade, omega)
-    np.testing.assert_allclose(found, core, rtol=2e-4)
+    result, core = limit(blade, omega)
+    np.testing.assert_allclose(result, core, rtol=2e-4)
 
 
 def test_no_axial_and_torsional_joints_without_such_stiffness_in_the_input():
     stiffness = tapered().stiffness.copy()
     stiffness[:, [0, 3], [0, 3]] = np.inf
-    found, core = limit(replace(tapered(), stiffness=stiffness, precone=0.05), 3.0)
-    np.testing.assert_allclose(found, core, rtol=2e-4)
+    result, core = limit(replace(tapered(), stiffness=stiffness, precone=0.05), 3.0)
+    np.testing.assert_allclose(result, core, rtol=2e-4)
 
 
 @pytest.mark.slow
@@ -213,8 +213,8 @@ def test_no_axial_and_torsional_joints_without_such_stiffness_in_the_input():
 def test_a_flap_hinge(precone):
     """In the steady state it rotates until the blade is almost flat."""
     blade = replace(unit(0.2, EA=1e6), root=np.array([np.inf] * 4 + [0.0, np.inf]), precone=precone)
-    found, core = limit(blade, 6.0)
-    np.testing.assert_allclose(found, core, rtol=1e-4)
+    result, core = limit(blade, 6.0)
+    np.testing.assert_allclose(result, core, rtol=1e-4)
 
 
 @pytest.mark.slow
@@ -223,8 +223,8 @@ def test_a_flap_hinge(precone):
 )
 def test_springs_at_the_root(root):
     blade = replace(unit(0.2, EA=1e4, I_y=1e-3, I_z=2e-3), root=np.array(root), pitch=0.3)
-    found, core = limit(blade, 2.0)
-    np.testing.assert_allclose(found, core, rtol=1e-4)
+    result, core = limit(blade, 2.0)
+    np.testing.assert_allclose(result, core, rtol=1e-4)
 
 
 def test_at_rest_only_the_derivative_by_velocities_is_left_out(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -102,11 +102,11 @@ def test_an_environment_whose_system_libraries_are_missing_is_not_installed(monk
     """Before the packages are fetched, and in an environment that another machine has made."""
     asked = pip(monkeypatch)
     needing = replace(ECHO, libraries=("lapack", "gfortran"), packages=("liblapack3", "libgfortran5"))
-    found = {"lapack": "liblapack.so.3", "gfortran": "libgfortran.so.5"}
-    monkeypatch.setattr(isolated, "find_library", found.get)
+    result = {"lapack": "liblapack.so.3", "gfortran": "libgfortran.so.5"}
+    monkeypatch.setattr(isolated, "find_library", result.get)
     made(needing)
     assert needing.version() == "2.5"
-    del found["lapack"]
+    del result["lapack"]
     remedy = r"apt-get install liblapack3 libgfortran5 \(not found: liblapack\)"
     assert needing.version() is None
     assert re.fullmatch(remedy, needing.hint)
@@ -181,5 +181,5 @@ def test_what_runs_in_environments_imports_nothing_of_this_package() -> None:
         tree = ast.parse(path.read_text(encoding="utf-8"))
         imported = {a.name for n in ast.walk(tree) if isinstance(n, ast.Import) for a in n.names}
         imported |= {n.module or "" for n in ast.walk(tree) if isinstance(n, ast.ImportFrom)}
-        known = {"base64", "importlib", "json", "os", "pathlib", "sys", "numpy", "sharpy", "pyframe3dd"}
-        assert {name.partition(".")[0] for name in imported} <= known
+        expected = {"base64", "importlib", "json", "os", "pathlib", "sys", "numpy", "sharpy", "pyframe3dd"}
+        assert {name.partition(".")[0] for name in imported} <= expected

@@ -72,9 +72,9 @@ both = pytest.mark.parametrize(
     ],
 )
 def test_agrees_with_core_to_rounding(code: Any, blade: Blade, omega: float) -> None:
-    found = code.solve(blade, omega, 12, 10)
-    mine = solve.mesh_modes(blade, omega, 12, 10, mass="half_end", stiffness="body_fixed")
-    np.testing.assert_allclose(found.frequencies, mine.frequencies, rtol=1e-10)
+    solution = code.solve(blade, omega, 12, 10)
+    own_answer = solve.mesh_modes(blade, omega, 12, 10, mass="half_end", stiffness="body_fixed")
+    np.testing.assert_allclose(solution.frequencies, own_answer.frequencies, rtol=1e-10)
 
 
 @both

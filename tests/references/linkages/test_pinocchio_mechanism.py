@@ -36,17 +36,17 @@ pytestmark = pytest.mark.skipif(lm.CODE.version() is None, reason=f"not installe
 
 def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> null_space.Linearized:
     """Compare steady state, eigenvalues with damping, and shapes; return the adapter's equations."""
-    found, answer = mb.solve(mechanism, guess), lm.CODE.solve_mechanism(mechanism, guess)
-    ours = [found.coordinates.index(name) for name in answer.coordinates]
-    np.testing.assert_allclose(answer.steady, found.linear.state.q[ours], atol=1e-10)
-    largest = float(np.abs(found.values).max())
-    assert len(answer.values) == len(found.values)
+    solution, answer = mb.solve(mechanism, guess), lm.CODE.solve_mechanism(mechanism, guess)
+    ours = [solution.coordinates.index(name) for name in answer.coordinates]
+    np.testing.assert_allclose(answer.steady, solution.linear.state.q[ours], atol=1e-10)
+    largest = float(np.abs(solution.values).max())
+    assert len(answer.values) == len(solution.values)
     for value, shape in zip(answer.values, answer.shapes, strict=True):
-        k = int(np.abs(found.values - value).argmin())
-        assert abs(found.values[k] - value) < 1e-9 * largest
-        near = np.abs(found.values - value) < 1e-3 * largest
+        k = int(np.abs(solution.values - value).argmin())
+        assert abs(solution.values[k] - value) < 1e-9 * largest
+        near = np.abs(solution.values - value) < 1e-3 * largest
         if near.sum() == 1:
-            theirs = found.shapes[k, ours]
+            theirs = solution.shapes[k, ours]
             mac = abs(np.vdot(theirs, shape)) ** 2 / (np.vdot(theirs, theirs) * np.vdot(shape, shape)).real
             assert mac > 1 - 1e-6
     return null_space.linearize(PinocchioTree(mechanism), guess)
@@ -97,12 +97,12 @@ def test_random_loops_on_a_rotating_hub(kinds: list[Kind], loop: Kind, turned: l
     spring = mb.Spring("hub", last, rng.normal(size=3), rng.normal(size=3), 20.0, 0.5, 0.7)
     m = replace(m, springs=(spring,), loads=(Load(last, rng.normal(size=3), "hub"),))
     try:
-        found = mb.solve(m, guess)
+        solution = mb.solve(m, guess)
     except mb.MechanismError:
         assume(False)
         return
-    state = found.linear.state
-    assert_agreement(m, dict(zip(found.linear.tree.coordinates, state.q.tolist(), strict=True)))
+    state = solution.linear.state
+    assert_agreement(m, dict(zip(solution.linear.tree.coordinates, state.q.tolist(), strict=True)))
 
 
 def every_element() -> tuple[PinocchioTree, np.ndarray]:

@@ -60,9 +60,9 @@ def test_a_flapping_rotor_on_a_nacelle(code, blades: int) -> None:
     pytest.importorskip("pinocchio" if code is PINOCCHIO else "exudyn")
     machine = flapping(blades, 9.0)
     exact = mb.solve(machine)
-    found = code.mechanism_modes(machine, {})
-    np.testing.assert_allclose(np.abs(found.values), exact.frequencies, rtol=1e-7)
-    np.testing.assert_allclose(found.values.real, exact.values.real, atol=1e-6)
+    solution = code.mechanism_modes(machine, {})
+    np.testing.assert_allclose(np.abs(solution.values), exact.frequencies, rtol=1e-7)
+    np.testing.assert_allclose(solution.values.real, exact.values.real, atol=1e-6)
 
 
 def test_blades_numbered_backwards_and_unequal_ones_are_refused() -> None:

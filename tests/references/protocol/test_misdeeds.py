@@ -66,15 +66,15 @@ def test_a_misdeed_affects_its_cells_only_and_is_reported(misdeed: Misdeed, done
 
 
 def test_nothing_is_left_running(done: dict) -> None:
-    left = []
+    remainder = []
     for environ in Path("/proc").glob("[0-9]*/environ"):
         try:
             if TOKEN.encode() in environ.read_bytes() and int(environ.parent.name) != os.getpid():
-                left.append((environ.parent / "cmdline").read_bytes())
+                remainder.append((environ.parent / "cmdline").read_bytes())
         except OSError:  # the process has ended, or is another user's
             continue
     assert len(done) == len(TABLE) >= 60
-    assert not left
+    assert not remainder
 
 
 def test_invalid_declarations_are_quoted(folder: Path) -> None:
@@ -124,7 +124,7 @@ def test_no_file_of_the_current_folder_shadows_a_module(folder: Path) -> None:
         lines
         + "    unsupported = lambda self, blade: None\n    modes = lambda self, *a: good(*a[1:])\nCODE = Code()\n",
     )
-    (ours, mine) = describe(["yoo-shin", "lawful:CODE"], limits=Limits(30.0))
-    assert (ours.failure, mine.failure, mine.name) == (None, None, "by-my-neighbour")
+    (ours, own_answer) = describe(["yoo-shin", "lawful:CODE"], limits=Limits(30.0))
+    assert (ours.failure, own_answer.failure, own_answer.name) == (None, None, "by-my-neighbour")
     (answer,) = answers("lawful:CODE", BLADE, RUNS[:1], Limits(30.0))
     assert isinstance(answer, Modes)

@@ -18,9 +18,9 @@ def file(tmp_path: Path) -> Path:
 
 def test_several_writers_lose_nothing(file: Path) -> None:
     def write(k: int) -> None:
-        mine = Store(file)
+        own_answer = Store(file)
         for i in range(50):
-            mine.put(f"{k}/{i}", "x", b"%d" % i)
+            own_answer.put(f"{k}/{i}", "x", b"%d" % i)
 
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(write, range(4)))
@@ -65,8 +65,8 @@ def test_a_file_that_has_grown_too_large_loses_its_older_half(file: Path, monkey
     kept.close()
     assert Store(file).kept()[0].count == 8
     monkeypatch.setattr(store, "MAX_BYTES", 50_000)
-    (left,) = Store(file).kept()
-    assert (left.count, left.first) == (4, 4.0)
+    (remainder,) = Store(file).kept()
+    assert (remainder.count, remainder.first) == (4, 4.0)
 
 
 def test_an_answer_that_cannot_be_written_is_an_error(file: Path) -> None:

@@ -27,8 +27,8 @@ NREL = Mount(length=61.5, hub_radius=1.5)
 
 
 def read(path: Path, mount: Mount) -> tuple[Blade, Deck]:
-    found = reading(path, mount)
-    return found.blade, deck(BladeFile(path, found.blade, found.source, mount))
+    result = reading(path, mount)
+    return result.blade, deck(BladeFile(path, result.blade, result.source, mount))
 
 
 def extrapolated(given: Deck, blade: Blade, omega: float) -> NDArray[Any]:

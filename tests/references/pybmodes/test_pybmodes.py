@@ -126,19 +126,19 @@ def test_shapes_between_nodes_use_the_shape_functions(elements: int) -> None:
 def test_torsion_has_polar_inertia_and_spin_softens() -> None:
     """Closed form: ω² = ((k − ½) π)² GJ / I_x + Ω² (I_z − I_y) / I_x; rotation about x, to the tip."""
     blade, omega = shaft(1e-4, 9e-4), 5.0
-    found = CODE.solve(blade, omega, 40, 2)
+    solution = CODE.solve(blade, omega, 40, 2)
     exact = np.sqrt((np.array([0.5, 1.5]) * np.pi) ** 2 * 1e-2 / 1e-3 + omega**2 * 0.8)
-    np.testing.assert_allclose(found.frequencies, exact, rtol=1e-6)
+    np.testing.assert_allclose(solution.frequencies, exact, rtol=1e-6)
     x = np.linspace(0, 1, 21)
-    shape = found.shapes[0, :, 3] / found.shapes[0, -1, 3]
+    shape = solution.shapes[0, :, 3] / solution.shapes[0, -1, 3]
     np.testing.assert_allclose(shape, np.sin(np.pi / 2 * x), atol=1e-6)
 
 
 def test_a_blade_without_polar_inertia_has_bending_modes_only() -> None:
     """pyBModes solves this eigenproblem with a singular mass matrix from below; all available modes are returned."""
-    found = CODE.solve(without_rotary_inertia(PARK), 10.0, 4, 99)
-    assert len(found.frequencies) > 10
-    assert not np.abs(found.shapes[:, :, 3]).max() > 1e-9 * np.abs(found.shapes).max()
+    solution = CODE.solve(without_rotary_inertia(PARK), 10.0, 4, 99)
+    assert len(solution.frequencies) > 10
+    assert not np.abs(solution.shapes[:, :, 3]).max() > 1e-9 * np.abs(solution.shapes).max()
 
 
 def test_axial_modes_are_left_out() -> None:
@@ -246,8 +246,8 @@ def test_a_mode_that_the_iteration_misses_is_found(doubted: bool, monkeypatch: p
 
     def run(count: int, **_: bool) -> SimpleNamespace:
         asked.append(count)
-        found = np.delete(all_, 1)[:count] if len(asked) == 1 else all_[:count]
-        return SimpleNamespace(frequencies=found * (1.0 + 1e-8 * len(asked)), shapes=list(range(len(found))))
+        result = np.delete(all_, 1)[:count] if len(asked) == 1 else all_[:count]
+        return SimpleNamespace(frequencies=result * (1.0 + 1e-8 * len(asked)), shapes=list(range(len(result))))
 
     rotor = SimpleNamespace(run=run)
     frequencies, shapes = pybmodes_beam.moving(rotor, (1.0, 1.0), count=3, doubted=doubted, most=10)

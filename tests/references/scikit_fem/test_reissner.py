@@ -63,12 +63,12 @@ class TestForms:
         return np.concatenate([(turn @ self.axes).T @ (self.slope + w_s), kappa])
 
     def test_strain_rate(self) -> None:
-        found = np.array([(self.strain(STEP * e) - self.strain(-STEP * e)) / (2 * STEP) for e in np.eye(12)]).T
-        np.testing.assert_allclose(found, forms.strain_rate(self.slope, self.axes), atol=1e-7)
+        result = np.array([(self.strain(STEP * e) - self.strain(-STEP * e)) / (2 * STEP) for e in np.eye(12)]).T
+        np.testing.assert_allclose(result, forms.strain_rate(self.slope, self.axes), atol=1e-7)
 
     def test_geometric_stiffness(self) -> None:
-        found = second_differences(lambda z: float(self.force @ self.strain(z)), 12)
-        np.testing.assert_allclose(found, forms.geometric(self.slope, self.axes, self.force), atol=1e-5)
+        result = second_differences(lambda z: float(self.force @ self.strain(z)), 12)
+        np.testing.assert_allclose(result, forms.geometric(self.slope, self.axes, self.force), atol=1e-5)
 
     def test_centrifugal_force_and_its_change(self) -> None:
         """Minus the gradient and the curvature of −½ ∫ (x² + y²) dm over the particles."""
@@ -95,8 +95,8 @@ class TestForms:
 
     def test_coriolis_force_of_a_point_mass(self) -> None:
         """2 m Ω × v: motion along x gives a force along y."""
-        found = forms.gyroscopic(np.diag([0.0, 0.0, 0.0, 3.0]))
-        np.testing.assert_array_equal(found[:3, :3], 2 * 3.0 * np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]]))
+        result = forms.gyroscopic(np.diag([0.0, 0.0, 0.0, 3.0]))
+        np.testing.assert_array_equal(result[:3, :3], 2 * 3.0 * np.array([[0, -1, 0], [1, 0, 0], [0, 0, 0]]))
         general = forms.gyroscopic(moments(body()))
         np.testing.assert_allclose(general, -general.T, atol=1e-14)
 
@@ -113,16 +113,16 @@ def second_differences(f: Callable[[Array], float], n: int) -> Array:
     """(n, n) of a function of (n,) at zero."""
     h = 1e-3 * np.eye(n)
     signs = [(a, b) for a in (1, -1) for b in (1, -1)]
-    found = [[sum(a * b * f(a * one + b * other) for a, b in signs) for other in h] for one in h]
-    return np.array(found) / 4e-6
+    results = [[sum(a * b * f(a * one + b * other) for a, b in signs) for other in h] for one in h]
+    return np.array(results) / 4e-6
 
 
 def test_the_line_agrees_with_core() -> None:
     blade = curved()
     s = np.array([[1.0, 3.0], [12.0, 19.0], [21.0, 39.0]])
-    found, theirs = line(blade, s), sections.frames(blade, s.ravel()).reshape(3, 2, 4, 4)
-    np.testing.assert_allclose(found.position, theirs[..., :3, 3], atol=1e-12)
-    np.testing.assert_allclose(found.axes, theirs[..., :3, :3], atol=1e-14)
+    result, theirs = line(blade, s), sections.frames(blade, s.ravel()).reshape(3, 2, 4, 4)
+    np.testing.assert_allclose(result.position, theirs[..., :3, 3], atol=1e-12)
+    np.testing.assert_allclose(result.axes, theirs[..., :3, :3], atol=1e-14)
 
 
 @needs_scikit_fem
@@ -156,8 +156,8 @@ class TestFrequencies:
 
     @pytest.mark.parametrize("one", PROPERTIES, ids=lambda p: p.name)
     def test_each_property_agrees_with_core(self, one) -> None:
-        found = frequencies(one.having, one.omega, 48, 5)
-        np.testing.assert_allclose(found, core(one.having, one.omega, 5), rtol=1e-5)
+        result = frequencies(one.having, one.omega, 48, 5)
+        np.testing.assert_allclose(result, core(one.having, one.omega, 5), rtol=1e-5)
 
     def test_a_kinked_blade_agrees_with_core(self) -> None:
         s = np.array([0.0, 3.0, 6.0])

@@ -137,10 +137,10 @@ class TestElements:
         s = np.linspace(0.0, 1.0, stations)
         kinked = section_stiffness(EA=1e4, GJ=1.0, EI_y=2.0 + np.cos(40 * s), EI_z=3.0)
         blade = Blade("kinked", s, kinked, np.repeat(section_mass(1.0), stations, axis=0), 0 * s)
-        found = np.array([CODE.solve(blade, 1.0, n, 1).elements for n in CODE.levels])
-        assert (found % (stations - 1) == 0).all()
-        assert (found >= CODE.levels).all()
-        assert (found[1:] >= 1.4 * found[:-1]).all()
+        result = np.array([CODE.solve(blade, 1.0, n, 1).elements for n in CODE.levels])
+        assert (result % (stations - 1) == 0).all()
+        assert (result >= CODE.levels).all()
+        assert (result[1:] >= 1.4 * result[:-1]).all()
 
 
 class TestShapes:

@@ -89,8 +89,8 @@ def test_segment_from_calculixs_matrices() -> None:
     EA, EI = SQUARE.young * SIDE**2, SQUARE.young * SIDE**4 / 12
     f = np.linalg.inv(piece.stiffness)
     np.testing.assert_allclose(np.diagonal(f)[[0, 4, 5]], length / np.array([EA, EI, EI]), rtol=1e-8)
-    found = chain_modes(mesh_from_segments([piece] * 20, at(HUB)), 0.0, 6).frequencies
-    np.testing.assert_allclose(found, np.repeat(timoshenko(3), 2), rtol=2e-4)
+    frequencies = chain_modes(mesh_from_segments([piece] * 20, at(HUB)), 0.0, 6).frequencies
+    np.testing.assert_allclose(frequencies, np.repeat(timoshenko(3), 2), rtol=2e-4)
     even = segment(model, *(tie(model, x, np.eye(len(weights[0]))) for x in (0.0, length)))
     assert np.linalg.inv(even.stiffness)[0, 0] > 1.1 * length / EA
 

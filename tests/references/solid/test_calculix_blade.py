@@ -40,9 +40,9 @@ def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
     """Euler–Bernoulli; rotary inertia lowers the third pair by 5.4e-4; with it, core agrees to 2e-5."""
     beta2 = np.square(ROOTS[:3])
     bending = beta2 * np.sqrt(E * I / (3000.0 * A)) / 36.0
-    found = CODE.solve(PARK, 0.0, 40, 6).frequencies
-    np.testing.assert_allclose(found, np.repeat(bending, 2), rtol=6e-4)
-    np.testing.assert_allclose(found, solve.mesh_modes(PARK, 0.0, 60, 6).frequencies, rtol=2e-5)
+    frequencies = CODE.solve(PARK, 0.0, 40, 6).frequencies
+    np.testing.assert_allclose(frequencies, np.repeat(bending, 2), rtol=6e-4)
+    np.testing.assert_allclose(frequencies, solve.mesh_modes(PARK, 0.0, 60, 6).frequencies, rtol=2e-5)
 
 
 @pytest.mark.slow
@@ -54,17 +54,17 @@ def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
 )
 def test_it_is_core_without_coriolis_forces(blade: Blade, omega: float, rtol: float) -> None:
     """The St Venant–Kirchhoff material stiffens with strain: 8e-5 at 10 rad/s, nine times that at 30."""
-    found = CODE.solve(blade, omega, 40, 6)
-    mine = solve.mesh_modes(blade, omega, 60, 6, effects=CODE.effects)
-    np.testing.assert_allclose(found.frequencies, mine.frequencies, rtol=rtol)
+    solution = CODE.solve(blade, omega, 40, 6)
+    own_answer = solve.mesh_modes(blade, omega, 60, 6, effects=CODE.effects)
+    np.testing.assert_allclose(solution.frequencies, own_answer.frequencies, rtol=rtol)
 
 
 @needs_ccx
 def test_shapes_are_in_blade_axes() -> None:
     """The plank's lowest mode is flapwise: along z, as the closed form says, and not about x."""
     shape = CODE.solve(PLANK, 0.0, 20, 1).shapes[0]
-    mine = solve.mesh_modes(PLANK, 0.0, 40, 1).shapes[0]
-    np.testing.assert_allclose(shape[:, 2] / shape[-1, 2], mine[:, 2] / mine[-1, 2], atol=2e-4)
+    own_answer = solve.mesh_modes(PLANK, 0.0, 40, 1).shapes[0]
+    np.testing.assert_allclose(shape[:, 2] / shape[-1, 2], own_answer[:, 2] / own_answer[-1, 2], atol=2e-4)
     assert np.abs(np.delete(shape, 2, axis=1)).max() < 1e-3 * np.abs(shape[-1, 2])
 
 

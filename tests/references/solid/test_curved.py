@@ -118,9 +118,9 @@ def test_the_way_a_slices_neighbours_are_loaded_and_its_length_do_not_matter() -
 
     middle = np.array([0.5 * CURVED.length])
     longest, *shorter = (identified.stiffness(CURVED, middle, ACROSS, stub)[0] for stub in (8.0, STUB, 3.0, 2.0))
-    left = [off(K, longest) for K in shorter]
-    assert left[0] < 1e-4
-    assert (np.divide(left[1:], left[:-1]) > 10).all()
+    remainder = [off(K, longest) for K in shorter]
+    assert remainder[0] < 1e-4
+    assert (np.divide(remainder[1:], remainder[:-1]) > 10).all()
     fine = identified.stiffness(CURVED, middle, ACROSS, STUB, 12)[0]
     assert off(shorter[0], fine) < 5e-4
 
@@ -130,16 +130,16 @@ def test_the_file_has_the_sections_of_the_solid() -> None:
     """Root, middle and tip, as its command writes them; every matrix is full."""
     blade = case()
     some = np.array([0, 20, 40])
-    found = identified.stiffness(CURVED, blade.stations[some], ACROSS)
-    size = np.sqrt(np.diagonal(found, axis1=1, axis2=2))
+    result = identified.stiffness(CURVED, blade.stations[some], ACROSS)
+    size = np.sqrt(np.diagonal(result, axis1=1, axis2=2))
     scale = size[:, :, None] * size[:, None]
-    np.testing.assert_allclose(blade.stiffness[some] / scale, found / scale, atol=1e-7)
+    np.testing.assert_allclose(blade.stiffness[some] / scale, result / scale, atol=1e-7)
     np.testing.assert_allclose(blade.mass, identified.mass(CURVED, blade.stations), atol=1e-12)
     assert len(blade.stations) == curved_solid.STATIONS
     text = (Path(next(iter(data.__path__))) / "curved-solid.toml").read_text(encoding="utf-8")
     assert text.startswith(curved_solid.head(CURVED))
-    assert (np.abs(found / scale) > 1e-3).all()
-    assert (np.abs((found / scale)[:, TORSION, BEND_Y]) > 0.3).all()
+    assert (np.abs(result / scale) > 1e-3).all()
+    assert (np.abs((result / scale)[:, TORSION, BEND_Y]) > 0.3).all()
 
 
 def test_the_root_transmits_the_wrench_that_the_tip_is_given() -> None:
@@ -154,10 +154,10 @@ def test_the_root_transmits_the_wrench_that_the_tip_is_given() -> None:
 @pytest.mark.slow
 def test_a_held_bar_has_timoshenkos_frequencies() -> None:
     """A square bar of Poisson's ratio 0.3, whose full clamp would be too stiff: core with the sections of ``square``."""
-    found = modes(BAR, 0.0, 20, 4).frequencies
+    frequencies = modes(BAR, 0.0, 20, 4).frequencies
     mass = identified.mass(BAR, np.array([0.0, 2.0]))
     beam = Blade("bar", np.array([0.0, 2.0]), np.repeat(square()[None], 2, axis=0), mass, np.zeros(2), hub_radius=0.1)
-    np.testing.assert_allclose(found, solve.mesh_modes(beam, 0.0, 60, 4).frequencies, rtol=3e-4)
+    np.testing.assert_allclose(frequencies, solve.mesh_modes(beam, 0.0, 60, 4).frequencies, rtol=3e-4)
 
 
 # ------------------------------------------------------------------------------------------------------------ the adapter

@@ -94,18 +94,18 @@ def test_steady_stretch_of_a_rotating_bar() -> None:
 
 def test_square_cantilever_at_zero_speed_has_timoshenkos_frequencies() -> None:
     """The paper's cantilever, three frequencies in each plane; clamped so that the root may contract."""
-    found = hexahedra.modes(
+    frequencies = hexahedra.modes(
         square_bar(LENGTH, 60, start=HUB), SQUARE, 0.0, 6, clamped_free_to_contract(HUB)
     ).frequencies
-    np.testing.assert_allclose(found, np.repeat(timoshenko(3), 2), rtol=3e-4)
+    np.testing.assert_allclose(frequencies, np.repeat(timoshenko(3), 2), rtol=3e-4)
 
 
 def test_square_cantilever_rotating_at_ten_rad_per_second() -> None:
     """Against core's Timoshenko beam, edgewise and flapwise: prestress, spin softening and Coriolis forces."""
-    found = hexahedra.modes(square_bar(LENGTH, 60, start=HUB), SQUARE, 10.0, 6, clamped_free_to_contract(HUB))
+    solution = hexahedra.modes(square_bar(LENGTH, 60, start=HUB), SQUARE, 10.0, 6, clamped_free_to_contract(HUB))
     beam = mesh_modes(square_beam(), 10.0, 80, 6)
-    np.testing.assert_allclose(found.frequencies, beam.frequencies, rtol=3e-4)
-    assert (mac(found, beam).diagonal() > 0.999).all()
+    np.testing.assert_allclose(solution.frequencies, beam.frequencies, rtol=3e-4)
+    assert (mac(solution, beam).diagonal() > 0.999).all()
 
 
 def test_coriolis_forces() -> None:
@@ -119,12 +119,12 @@ def test_coriolis_forces() -> None:
     beam = square_beam(material, side, length, 0.0)
     drop = {}
     for coriolis in (True, False):
-        found = hexahedra.modes(
+        frequencies = hexahedra.modes(
             bricks, material, omega, 4, clamped_free_to_contract(0.0), coriolis=coriolis
         ).frequencies
         exact = mesh_modes(beam, omega, 60, 4, effects=Effects(coriolis=coriolis)).frequencies
-        np.testing.assert_allclose(found, exact, rtol=1e-3)
-        drop[coriolis] = found[0], exact[0]
+        np.testing.assert_allclose(frequencies, exact, rtol=1e-3)
+        drop[coriolis] = frequencies[0], exact[0]
     solids, beams = (drop[True][k] / drop[False][k] - 1 for k in (0, 1))
     assert beams < -6e-4
     assert solids == pytest.approx(beams, rel=2e-3)

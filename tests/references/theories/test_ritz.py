@@ -70,13 +70,13 @@ def test_polynomials(ends: list[float], functions, terms: int) -> None:
 
 @pytest.mark.parametrize("code", [YOO_SHIN, EXACT], ids=ids)
 def test_sparse_and_dense_solutions_agree(code, monkeypatch: pytest.MonkeyPatch) -> None:
-    found = []
+    result = []
     for size in (0, 10**9):
         monkeypatch.setattr(ritz, "DENSE", size)
-        found.append(code.solve(kinked(), 5.0, 16, 8))
-    np.testing.assert_allclose(found[1].frequencies, found[0].frequencies, rtol=1e-11)
-    overlap = np.abs(np.einsum("msi,msi->m", found[0].shapes.conj(), found[1].shapes))
-    size = [np.linalg.norm(f.shapes.reshape(8, -1), axis=1) for f in found]
+        result.append(code.solve(kinked(), 5.0, 16, 8))
+    np.testing.assert_allclose(result[1].frequencies, result[0].frequencies, rtol=1e-11)
+    overlap = np.abs(np.einsum("msi,msi->m", result[0].shapes.conj(), result[1].shapes))
+    size = [np.linalg.norm(f.shapes.reshape(8, -1), axis=1) for f in result]
     np.testing.assert_allclose(overlap, size[0] * size[1], rtol=1e-9)
 
 
@@ -100,14 +100,14 @@ def test_tension_is_the_centrifugal_force_outboard() -> None:
 
 @pytest.mark.parametrize("blade", [slender(70.0, 0.1, 0.3), kinked(0.8, 0.0, stations=41)], ids=["uniform", "twisted"])
 def test_shapes_are_orthogonal_in_mass(blade: Blade) -> None:
-    found = ASSUMED.solve(blade, 6.0, FINE, 5)
-    assert np.abs(found.shapes.imag).max() == 0
+    solution = ASSUMED.solve(blade, 6.0, FINE, 5)
+    assert np.abs(solution.shapes.imag).max() == 0
     weights, _ = newton_cotes(4)
     quadrature = np.zeros(21)
     for k in range(5):
         quadrature[4 * k : 4 * k + 5] += weights * 0.05
     metric = quadrature * mass_at(blade, STATIONS)[:, 0, 0]
-    gram = np.einsum("isk,s,jsk->ij", found.shapes.real, metric, found.shapes.real)
+    gram = np.einsum("isk,s,jsk->ij", solution.shapes.real, metric, solution.shapes.real)
     size = np.sqrt(np.diag(gram))
     np.testing.assert_allclose(gram / np.outer(size, size), np.eye(5), atol=2e-4)
 

@@ -38,18 +38,18 @@ def cantilever(k: int) -> float:
 
 @pytest.mark.parametrize("code", CODES, ids=ids)
 def test_at_rest_the_cantilevers_closed_form(code) -> None:
-    found = code.solve(park(), 0.0, FINE, 20)
+    solution = code.solve(park(), 0.0, FINE, 20)
     if code is EXACT:
-        found = code.solve(replace(park(), mass=section_mass([1.2, 1.2])), 0.0, FINE, 20)
+        solution = code.solve(replace(park(), mass=section_mass([1.2, 1.2])), 0.0, FINE, 20)
     expected = [cantilever(k) ** 2 * np.sqrt(1.4e4 / 1.2) / 36.0 for k in range(1, 6)]
     for plane in (Y, Z):
-        np.testing.assert_allclose(family(found, plane)[:5], expected, rtol=1e-11)
+        np.testing.assert_allclose(family(solution, plane)[:5], expected, rtol=1e-11)
 
 
 @pytest.mark.parametrize("code", [YOO_SHIN, EXACT], ids=ids)
 def test_at_rest_stretching_modes_are_the_bars(code) -> None:
-    found = code.solve(slender(10.0), 0.0, FINE, 12)
-    np.testing.assert_allclose(family(found, X)[:3], 10.0 * np.pi * np.array([0.5, 1.5, 2.5]), rtol=1e-11)
+    solution = code.solve(slender(10.0), 0.0, FINE, 12)
+    np.testing.assert_allclose(family(solution, X)[:3], 10.0 * np.pi * np.array([0.5, 1.5, 2.5]), rtol=1e-11)
 
 
 @pytest.mark.parametrize("omega", [0.0, 3.0])
@@ -57,8 +57,8 @@ def test_torsion_of_a_flat_blade_gains_the_square_of_the_speed(omega: float) -> 
     """Flat: I_y = 0, I_x = I_z. Then flapwise motion is not coupled and ω² = ω₀² + Ω² (the tennis racket's term)."""
     blade = uniform_blade("flat", 1.0, 0.0, EA=1e4, GJ=2.0, EI_y=1.0, EI_z=50.0, mass=1.0, I_z=0.1)
     rest = np.pi * np.array([0.5, 1.5, 2.5]) * np.sqrt(2.0 / 0.1)
-    found = family(EXACT.solve(blade, omega, FINE, 12), TURN)
-    np.testing.assert_allclose(found[:3], np.hypot(rest, omega), rtol=1e-11)
+    result = family(EXACT.solve(blade, omega, FINE, 12), TURN)
+    np.testing.assert_allclose(result[:3], np.hypot(rest, omega), rtol=1e-11)
 
 
 def test_steady_stretch_of_a_uniform_blade() -> None:
@@ -100,9 +100,9 @@ def test_southwells_coefficient_of_the_uniform_cantilever() -> None:
 
     K = quad(lambda x: (1 - x * x) / 2 * slope(x) ** 2, 0, 1)[0] / quad(lambda x: phi(x) ** 2, 0, 1)[0]
     assert round(K, 3) == 1.193
-    found = SOUTHWELL.solve(slender(), 7.0, FINE, 6)
+    solution = SOUTHWELL.solve(slender(), 7.0, FINE, 6)
     for plane, less in ((Z, 0.0), (Y, 1.0)):
-        assert family(found, plane)[0] == pytest.approx(np.sqrt(b**4 + (K - less) * 49.0), rel=1e-11)
+        assert family(solution, plane)[0] == pytest.approx(np.sqrt(b**4 + (K - less) * 49.0), rel=1e-11)
 
 
 # ------------------------------------------------------------------- the paper's cantilever at 10 rad/s, as computed elsewhere
@@ -119,9 +119,9 @@ def test_southwells_coefficient_of_the_uniform_cantilever() -> None:
 )
 def test_the_papers_cantilever(code, edgewise: tuple[str, ...], flapwise: tuple[str, ...]) -> None:
     """Digits of two independent spectral solutions that take the sections as rigid in torsion."""
-    found = code.solve(park(), 10.0, FINE, 12)
+    solution = code.solve(park(), 10.0, FINE, 12)
     for plane, digits in ((Y, edgewise), (Z, flapwise)):
-        for frequency, text in zip(family(found, plane)[: len(digits)], digits, strict=True):
+        for frequency, text in zip(family(solution, plane)[: len(digits)], digits, strict=True):
             assert round(frequency, len(text.partition(".")[2])) == float(text)
 
 
@@ -183,12 +183,12 @@ def test_southwells_bracket_holds_for_every_mode(hub: float, omega: float, taper
         assert (lower <= value + rounding).all()
         assert (value <= upper + rounding).all()
         assert value[0] == upper[0]  # Southwell's theorem: never too low a first frequency
-    found, truth = (code.solve(blade, omega, 20, 6) for code in (SOUTHWELL, ASSUMED))
+    result, truth = (code.solve(blade, omega, 20, 6) for code in (SOUTHWELL, ASSUMED))
     for plane in (Y, Z):
-        here = np.abs(found.shapes).max(1).argmax(1) == plane
+        here = np.abs(result.shapes).max(1).argmax(1) == plane
         assert here.sum() >= 2
-        reach = found.uncertainty[here][:2] * found.frequencies[here][:2]
-        assert (np.abs(found.frequencies[here][:2] - family(truth, plane)[:2]) <= reach + 1e-9).all()
+        reach = result.uncertainty[here][:2] * result.frequencies[here][:2]
+        assert (np.abs(result.frequencies[here][:2] - family(truth, plane)[:2]) <= reach + 1e-9).all()
 
 
 @pytest.mark.parametrize("seed", range(10))
@@ -209,9 +209,9 @@ def test_southwells_bracket_holds_for_any_two_stiffnesses(seed: int) -> None:
 
 @pytest.mark.parametrize("omega", [0.0, 4.0, 15.0])
 def test_southwells_bracket_of_a_twisted_blade(omega: float) -> None:
-    found, truth = (code.solve(kinked(0.8, 0.0), omega, 16, 6) for code in (SOUTHWELL, ASSUMED))
-    assert (np.abs(found.frequencies - truth.frequencies) <= found.uncertainty * found.frequencies + 1e-9).all()
-    assert (found.uncertainty > (1e-6 if omega else -1.0)).all()
+    result, truth = (code.solve(kinked(0.8, 0.0), omega, 16, 6) for code in (SOUTHWELL, ASSUMED))
+    assert (np.abs(result.frequencies - truth.frequencies) <= result.uncertainty * result.frequencies + 1e-9).all()
+    assert (result.uncertainty > (1e-6 if omega else -1.0)).all()
 
 
 # --------------------------------------------------------------------------------------------------------------- in-house
@@ -235,26 +235,26 @@ def test_exact_beam_is_what_the_solver_tends_to(tip: float) -> None:
 def test_assumed_modes_are_what_the_solver_tends_to_without_the_same_effects(twist: float, pitch: float) -> None:
     """Bending alone, for which the solver's elements are of fourth order; the solver's fourth mode here is a stretch."""
     blade = replace(kinked(twist, 0.0), pitch=pitch)
-    found = ASSUMED.solve(blade, 6.0, FINE, 3).frequencies
-    np.testing.assert_allclose(extrapolated(blade, 6.0, 3, 4, ASSUMED.effects), found, rtol=1e-7)
+    frequencies = ASSUMED.solve(blade, 6.0, FINE, 3).frequencies
+    np.testing.assert_allclose(extrapolated(blade, 6.0, 3, 4, ASSUMED.effects), frequencies, rtol=1e-7)
 
 
 def test_yoo_shin_is_what_the_solver_tends_to_without_the_same_effects() -> None:
     """Bending coupled with stretch, for which the solver's elements are of second order."""
     blade = kinked(inertia=0.0)
-    found = YOO_SHIN.solve(blade, 6.0, FINE, 6)
-    assert X in np.abs(found.shapes).max(1).argmax(1)
-    np.testing.assert_allclose(extrapolated(blade, 6.0, 6, 2, YOO_SHIN.effects), found.frequencies, rtol=2e-8)
+    solution = YOO_SHIN.solve(blade, 6.0, FINE, 6)
+    assert X in np.abs(solution.shapes).max(1).argmax(1)
+    np.testing.assert_allclose(extrapolated(blade, 6.0, 6, 2, YOO_SHIN.effects), solution.frequencies, rtol=2e-8)
 
 
 def test_gyroscopic_lag_has_the_solvers_sign() -> None:
     """Moving forwards (+y) a section turns faster with the rotor and is pulled outwards: x leads y by a quarter."""
-    for found in (
+    for result in (
         YOO_SHIN.solve(slender(), 10.0, 16, 4),
         EXACT.solve(slender(), 10.0, 16, 4),
         mesh_modes(slender(), 10.0, 50, 4),
     ):
-        shape = found.shapes[0]
+        shape = result.shapes[0]
         ratio = shape[-1, X] / shape[-1, Y]
         assert ratio.imag > 1e-3
         assert abs(ratio.real) < 1e-9
@@ -263,8 +263,8 @@ def test_gyroscopic_lag_has_the_solvers_sign() -> None:
 def test_flapwise_torsion_lag_has_the_solvers_sign() -> None:
     blade = uniform_blade("bar", 1.0, 0.2, EA=2000.0, GJ=3.0, EI_y=1.0, EI_z=20.0, mass=1.0, I_y=0.02, I_z=0.05)
     ratios = []
-    for found in (EXACT.solve(blade, 6.0, 16, 4), mesh_modes(blade, 6.0, 200, 4)):
-        shape = found.shapes[np.abs(found.shapes).max(1).argmax(1) == Z][0]
+    for result in (EXACT.solve(blade, 6.0, 16, 4), mesh_modes(blade, 6.0, 200, 4)):
+        shape = result.shapes[np.abs(result.shapes).max(1).argmax(1) == Z][0]
         ratios.append(shape[-1, TURN] / shape[-1, Z])
     assert abs(ratios[0].imag) > 0.01
     assert ratios[1] == pytest.approx(ratios[0], rel=1e-3)
