@@ -44,16 +44,16 @@ def test_toml_is_read_however_it_is_saved(saved) -> None:
 def test_a_blades_file_is_read_however_it_is_saved(saved) -> None:
     mount = Mount(length=50.0)
     content = (DATA / "elastodyn_blade.dat").read_text(encoding="utf-8")
-    found = readers.read(saved(content, "blade.dat"), mount)
+    blade = readers.read(saved(content, "blade.dat"), mount)
     expected = readers.read(DATA / "elastodyn_blade.dat", mount)
-    np.testing.assert_array_equal(found.stiffness, expected.stiffness)
-    np.testing.assert_array_equal(found.mass, expected.mass)
+    np.testing.assert_array_equal(blade.stiffness, expected.stiffness)
+    np.testing.assert_array_equal(blade.mass, expected.mass)
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
 def test_tables_are_read_however_they_are_saved(saved, separator: str) -> None:
-    found = read_table(saved(CSV.replace(",", separator), "a.csv"), COLUMNS)
-    np.testing.assert_array_equal(found["mass [kg/m]"], [5.5, 2.5])
+    result = read_table(saved(CSV.replace(",", separator), "a.csv"), COLUMNS)
+    np.testing.assert_array_equal(result["mass [kg/m]"], [5.5, 2.5])
     (row,) = user_results.read("rig", saved(RESULTS.replace(",", separator), "rig.csv")).rows
     assert row.line == 2
     assert (row.family, row.mode) == ("flapwise", 1)

@@ -20,11 +20,11 @@ HINGED, LINKED = "hinged-blade", "pitch-link"
 
 def test_the_example_by_hand_is_its_closed_form() -> None:
     example = runpy.run_path(str(EXAMPLES / "hinged_blade.py"))
-    found = mb.solve(example["hinged_blade"]())
+    solution = mb.solve(example["hinged_blade"]())
     flap, lag, ratio = example["closed_form"]()
-    np.testing.assert_allclose(found.frequencies, [lag, flap], rtol=1e-12)
-    np.testing.assert_allclose(found.damping, [ratio, 0.0], atol=1e-12)
-    assert found.leading == ("lag.rz", "flap.rz")
+    np.testing.assert_allclose(solution.frequencies, [lag, flap], rtol=1e-12)
+    np.testing.assert_allclose(solution.damping, [ratio, 0.0], atol=1e-12)
+    assert solution.leading == ("lag.rz", "flap.rz")
 
 
 def test_the_free_shaft_has_each_mode_once_in_each_plane() -> None:
@@ -32,10 +32,10 @@ def test_the_free_shaft_has_each_mode_once_in_each_plane() -> None:
 
     Rounding once gave the pencil's infinite eigenvalues finite values, and then every mode counted twice.
     """
-    found = mb.solve(runpy.run_path(str(EXAMPLES / "free_shaft.py"))["free_shaft"]())
-    assert len(found.frequencies) == len(found.linear.names)
-    np.testing.assert_allclose(found.frequencies[:6], 0.0)
-    np.testing.assert_allclose(found.frequencies[6:10], [9646.8, 9646.8, 25312.6, 25312.6], rtol=5e-5)
+    solution = mb.solve(runpy.run_path(str(EXAMPLES / "free_shaft.py"))["free_shaft"]())
+    assert len(solution.frequencies) == len(solution.linear.names)
+    np.testing.assert_allclose(solution.frequencies[:6], 0.0)
+    np.testing.assert_allclose(solution.frequencies[6:10], [9646.8, 9646.8, 25312.6, 25312.6], rtol=5e-5)
 
 
 def test_the_example_in_toml_is_the_one_by_hand() -> None:
@@ -185,8 +185,8 @@ def test_mass_of_a_beam_is_inside_it(tmp_path: Path) -> None:
     text = (
         'name = "beam"\n' + frame + "".join(joint.format(*p) for p in pairs) + "".join(beam.format(*p) for p in pairs)
     )
-    found = mechanisms.read(write(tmp_path, text)).solve(2)
-    np.testing.assert_allclose(found.frequencies, np.array([1.0, 2.0]) * 1.8751040687**2, rtol=1e-3)
+    solution = mechanisms.read(write(tmp_path, text)).solve(2)
+    np.testing.assert_allclose(solution.frequencies, np.array([1.0, 2.0]) * 1.8751040687**2, rtol=1e-3)
 
 
 BAD = [
@@ -289,11 +289,11 @@ def test_what_rounding_leaves_of_zero_is_shown_as_zero(capsys) -> None:
 
 def test_json_is_what_the_library_gives(capsys) -> None:
     status, out, _ = run(capsys, "mechanism", HINGED, "--json")
-    found, data = library.mechanism(HINGED).solve(), json.loads(out)
+    solution, data = library.mechanism(HINGED).solve(), json.loads(out)
     assert status == 0
-    np.testing.assert_allclose([m["frequency_rad_s"] for m in data["modes"]], found.frequencies, rtol=1e-13)
-    np.testing.assert_allclose([m["damping_ratio"] for m in data["modes"]], found.damping, atol=1e-13)
-    assert data["steady"] == found.steady
+    np.testing.assert_allclose([m["frequency_rad_s"] for m in data["modes"]], solution.frequencies, rtol=1e-13)
+    np.testing.assert_allclose([m["damping_ratio"] for m in data["modes"]], solution.damping, atol=1e-13)
+    assert data["steady"] == solution.steady
     assert data["independent"] == ["flap.rz", "lag.rz"]
     assert data["redundant"] == []
 

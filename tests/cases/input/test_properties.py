@@ -61,9 +61,9 @@ def fibrous() -> tuple[Blade, np.ndarray, np.ndarray]:
 
 def test_tension_centre_and_axial_stiffness_are_those_of_the_fibres() -> None:
     blade, at, stiff = fibrous()
-    found = sections(blade)
-    np.testing.assert_allclose(found.tension_centre[0], stiff @ at / stiff.sum(), rtol=1e-10)
-    np.testing.assert_allclose(found.EA, stiff.sum(), rtol=1e-10)
+    section = sections(blade)
+    np.testing.assert_allclose(section.tension_centre[0], stiff @ at / stiff.sum(), rtol=1e-10)
+    np.testing.assert_allclose(section.EA, stiff.sum(), rtol=1e-10)
 
 
 def test_principal_axes_and_bending_stiffness_are_those_of_the_fibres() -> None:
@@ -79,34 +79,34 @@ def test_principal_axes_and_bending_stiffness_are_those_of_the_fibres() -> None:
 
 def test_shear_centre_is_where_two_panels_cross() -> None:
     """A panel along y at z = 0.2 and one along z at y = −0.2 carry any force through (−0.2, 0.2) without twisting."""
-    found = sections(fibrous()[0])
-    np.testing.assert_allclose(found.shear_centre[0], [-0.2, 0.2], rtol=1e-9)
-    np.testing.assert_allclose(found.GJ[0], 2e6, rtol=1e-9)
+    section = sections(fibrous()[0])
+    np.testing.assert_allclose(section.shear_centre[0], [-0.2, 0.2], rtol=1e-9)
+    np.testing.assert_allclose(section.GJ[0], 2e6, rtol=1e-9)
 
 
 def test_mass_centre_and_axes_are_those_of_the_points() -> None:
     at, masses = RNG.normal(size=(5, 2)), RNG.uniform(1, 2, 5)
-    found = sections(prism(section_stiffness(1e8, 1e6, 1e6, 2e6)[0], points(masses, at)))
-    np.testing.assert_allclose(found.mass_centre[0], masses @ at / masses.sum(), rtol=1e-12)
+    section = sections(prism(section_stiffness(1e8, 1e6, 1e6, 2e6)[0], points(masses, at)))
+    np.testing.assert_allclose(section.mass_centre[0], masses @ at / masses.sum(), rtol=1e-12)
     y, z = (at - masses @ at / masses.sum()).T
-    a = found.mass_axes[0]
+    a = section.mass_axes[0]
     product = masses @ ((y * np.cos(a) + z * np.sin(a)) * (z * np.cos(a) - y * np.sin(a)))
     assert abs(product) < 1e-12 * masses.sum()
 
 
 def test_sections_alike_every_way_have_no_principal_axes() -> None:
-    found = sections(prism(section_stiffness(1e8, 1e6, 2e6, 2e6)[0], section_mass(3.0)[0]))
-    assert np.isnan(found.principal).all()
-    assert np.isnan(found.mass_axes).all()
-    np.testing.assert_allclose(found.EI_flap, 2e6)
+    section = sections(prism(section_stiffness(1e8, 1e6, 2e6, 2e6)[0], section_mass(3.0)[0]))
+    assert np.isnan(section.principal).all()
+    assert np.isnan(section.mass_axes).all()
+    np.testing.assert_allclose(section.EI_flap, 2e6)
 
 
 def test_rigid_strains_are_infinite_and_put_their_centre_on_the_axis() -> None:
-    found = sections(prism(section_stiffness(np.inf, np.inf, 1e6, 2e6)[0], section_mass(3.0)[0]))
-    assert np.isinf(found.EA).all()
-    assert np.isinf(found.GJ).all()
-    assert not found.tension_centre.any()
-    assert not found.shear_centre.any()
+    section = sections(prism(section_stiffness(np.inf, np.inf, 1e6, 2e6)[0], section_mass(3.0)[0]))
+    assert np.isinf(section.EA).all()
+    assert np.isinf(section.GJ).all()
+    assert not section.tension_centre.any()
+    assert not section.shear_centre.any()
 
 
 @given(y=st.floats(-0.4, 0.4), z=st.floats(-0.4, 0.4))
@@ -132,19 +132,21 @@ def tapered(**changes: object) -> Blade:
 
 def test_a_tapered_rod_has_the_mass_and_moments_of_a_triangle() -> None:
     """m₀L/2, m₀L²/6, m₀L³/12."""
-    found = about_root(tapered())
-    np.testing.assert_allclose([found.mass, found.first[0], found.moments[2, 2]], [36.0, 72.0, 216.0], rtol=1e-9)
-    np.testing.assert_allclose(found.centre, [2.0, 0.0, 0.0], atol=1e-9)
+    root_loads = about_root(tapered())
+    np.testing.assert_allclose(
+        [root_loads.mass, root_loads.first[0], root_loads.moments[2, 2]], [36.0, 72.0, 216.0], rtol=1e-9
+    )
+    np.testing.assert_allclose(root_loads.centre, [2.0, 0.0, 0.0], atol=1e-9)
 
 
 def test_about_the_hub_precone_and_pitch_count() -> None:
     """At (1.5 + s) along an axis coned by 10°, a point is (1.5 + s) cos 10° from the rotor's axis and that far downwind."""
     blade = tapered(hub_radius=1.5, precone=np.radians(10), pitch=0.3)
-    found = about_hub(blade)
+    hub_loads = about_hub(blade)
     r = np.array([np.cos(np.radians(10)), 0.0, np.sin(np.radians(10))])
-    np.testing.assert_allclose(found.centre, 3.5 * r, rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(hub_loads.centre, 3.5 * r, rtol=1e-9, atol=1e-12)
     second = 36.0 * 1.5**2 + 2 * 1.5 * 72.0 + 216.0
-    np.testing.assert_allclose(found.moments[2, 2], second * r[0] ** 2, rtol=1e-9)
+    np.testing.assert_allclose(hub_loads.moments[2, 2], second * r[0] ** 2, rtol=1e-9)
     np.testing.assert_allclose(about_root(blade).centre, [2.0, 0.0, 0.0], atol=1e-9)
 
 
@@ -167,11 +169,11 @@ def test_the_body_at_the_tip_is_told_about_its_own_centre() -> None:
     at, own = np.array([0.1, 0.4, -0.2]), np.diag([1.0, 0.0, 1.0])
     cross = np.array([[0, 0.2, 0.4], [-0.2, 0, -0.1], [-0.4, 0.1, 0]])
     body = np.block([[3 * np.eye(3), -3 * cross], [3 * cross, own - 3 * cross @ cross]])
-    found = tip(tapered(tip_mass=body))
-    assert found is not None
-    assert found.mass == 3.0
-    np.testing.assert_allclose(found.centre, at, atol=1e-15)
-    np.testing.assert_allclose(found.own, own, atol=1e-14)
+    result = tip(tapered(tip_mass=body))
+    assert result is not None
+    assert result.mass == 3.0
+    np.testing.assert_allclose(result.centre, at, atol=1e-15)
+    np.testing.assert_allclose(result.own, own, atol=1e-14)
     assert tip(tapered()) is None
 
 
@@ -188,8 +190,8 @@ def test_nrel_5mw_as_published() -> None:
     np.testing.assert_allclose(lumps.sum(), 17740.0, rtol=1e-5)
     np.testing.assert_allclose(lumps @ at, 363231.0, rtol=1e-5)
     np.testing.assert_allclose(lumps @ at**2, 11776047.0, rtol=1e-5)
-    found = about_root(blade)
+    root_loads = about_root(blade)
     table = trapezoid(blade.mass[:, 0, 0], blade.stations)
-    np.testing.assert_allclose(found.mass, table, rtol=1e-12)
-    assert found.mass / 17740.0 - 1 == pytest.approx(-0.0074, abs=1e-4)
-    assert found.first[0] / 363231.0 - 1 == pytest.approx(-0.0052, abs=1e-4)
+    np.testing.assert_allclose(root_loads.mass, table, rtol=1e-12)
+    assert root_loads.mass / 17740.0 - 1 == pytest.approx(-0.0074, abs=1e-4)
+    assert root_loads.first[0] / 363231.0 - 1 == pytest.approx(-0.0052, abs=1e-4)

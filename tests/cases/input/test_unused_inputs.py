@@ -44,9 +44,9 @@ EXPECTED = {
 
 @pytest.mark.parametrize("file", EXPECTED)
 def test_they_are_found_each_once(file: str) -> None:
-    left = readers.reading(DATA / file).source.unused
-    assert {u.name: (u.largest, u.unit) for u in left} == EXPECTED[file]
-    assert len(left) == len(EXPECTED[file])
+    remainder = readers.reading(DATA / file).source.unused
+    assert {u.name: (u.largest, u.unit) for u in remainder} == EXPECTED[file]
+    assert len(remainder) == len(EXPECTED[file])
 
 
 @pytest.mark.parametrize(
@@ -103,8 +103,8 @@ def test_beamdyns_pitch_actuator(tmp_path: Path) -> None:
         "\nTrue UsePitchAct - actuator? (flag)\n200 PitchJ - inertia\n2E7 PitchK - stiffness\n0 PitchC - damping\n"
     )
     (tmp_path / "m.dat").write_text((DATA / "beamdyn_main.dat").read_text() + actuator)
-    left = {u.name: u.largest for u in readers.reading(tmp_path / "m.dat").source.unused}
-    assert left == {"mu1 … mu6": 0.0022, "PitchJ": 200.0, "PitchK": 2e7}
+    remainder = {u.name: u.largest for u in readers.reading(tmp_path / "m.dat").source.unused}
+    assert remainder == {"mu1 … mu6": 0.0022, "PitchJ": 200.0, "PitchK": 2e7}
 
 
 def test_hawc2s_damping_and_lumped_masses(tmp_path: Path) -> None:
@@ -114,8 +114,8 @@ def test_hawc2s_damping_and_lumped_masses(tmp_path: Path) -> None:
         (DATA / "hawc2.htc").read_text().replace("    type        timoschenko ;\n", "    type timoschenko ;\n" + extra)
     )
     (tmp_path / "h.htc").write_text(text)
-    left = {u.name: (u.largest, u.unit) for u in readers.reading(tmp_path / "h.htc").source.unused}
-    assert left == {"damping_posdef": (1.6e-3, "s"), "concentrated_mass": (250.0, "kg")}
+    remainder = {u.name: (u.largest, u.unit) for u in readers.reading(tmp_path / "h.htc").source.unused}
+    assert remainder == {"damping_posdef": (1.6e-3, "s"), "concentrated_mass": (250.0, "kg")}
 
 
 LINE = "not used: BlPitch (largest 3 deg, elastodyn_main.dat)"

@@ -84,11 +84,11 @@ def test_windio_with_zero_shear_stiffness_is_rigid_in_shear(tmp_path: Path, vers
         matrix = blade["structure"]["elastic_properties"]["stiffness_matrix"]
         for key in [k for k in matrix if k.startswith(("K1", "K2"))]:
             matrix[key] = [0.0] * len(matrix[key])
-    found = readers.reading(written(tmp_path / "b.yaml", data))
-    shear, rest = found.blade.stiffness[:, [1, 2], [1, 2]], found.blade.stiffness[:, [0, 3, 4, 5], [0, 3, 4, 5]]
+    reading = readers.reading(written(tmp_path / "b.yaml", data))
+    shear, rest = reading.blade.stiffness[:, [1, 2], [1, 2]], reading.blade.stiffness[:, [0, 3, 4, 5], [0, 3, 4, 5]]
     assert np.isinf(shear).all()
     assert np.isfinite(rest).all()
-    assert "K11, K22 zero or not given: those strains are rigid" in found.source.notes
+    assert "K11, K22 zero or not given: those strains are rigid" in reading.source.notes
 
 
 def test_windio_1_with_coupled_zero_shear_is_refused(tmp_path: Path) -> None:

@@ -79,9 +79,9 @@ def test_certification(tmp_path: Path, factor: float, more: str, printed: tuple[
     path = write(tmp_path, factor, more)
     assert towers.is_tower(path)
     tower, source = towers.read(path)
-    found = tower_modes(tower, len(printed))
-    np.testing.assert_allclose(found.frequencies / (2 * np.pi), printed, rtol=5e-3)
-    assert found.names[:2] == ("1st side-side", "1st fore-aft")
+    solution = tower_modes(tower, len(printed))
+    np.testing.assert_allclose(solution.frequencies / (2 * np.pi), printed, rtol=5e-3)
+    assert solution.names[:2] == ("1st side-side", "1st fore-aft")
     assert "without weight, as in BModes" in source.notes
     exact = [(0.40 * HEIGHT, 1.5 * 9.0e9 * 0.5), (0.72 * HEIGHT, 1.5 * 1.6e9 * 0.75)] if "wire_stfness" in more else []
     wires = [(height, float(S[2, 2])) for height, S in tower.support.springs]
@@ -106,15 +106,15 @@ def test_properties_may_jump(tmp_path: Path) -> None:
     file = tmp_path / "sections.dat"
     head, rows = file.read_text().splitlines()[:5], file.read_text().splitlines()[5:]
     lower, upper = rows[0].split(), rows[4].split()
-    found = []
+    result = []
     for step in (0.0, 1e-4):
         parts = [(0.0, lower), (0.4, lower), (0.4 + step, upper), (1.0, upper)]
         text = "\n".join(" ".join([f"{at:g}", *row[1:]]) for at, row in parts)
         file.write_text("\n".join(head).replace("10 n_secs", "4 n_secs") + "\n" + text + "\n")
         tower, source = towers.read(path)
         assert ("properties jump at 32.956" in " ".join(source.notes)) == (step == 0.0)
-        found.append(tower_modes(tower, 3).frequencies)
-    np.testing.assert_allclose(*found, rtol=2e-4)
+        result.append(tower_modes(tower, 3).frequencies)
+    np.testing.assert_allclose(*result, rtol=2e-4)
 
 
 def matrix(name: str, values: np.ndarray) -> str:

@@ -72,10 +72,10 @@ def hawc2(folder: Path, twist: float = 0.0, mass: float = 0.0, offset: float = 0
 
 def test_hawc2(tmp_path: Path) -> None:
     tower, source = towers.read(hawc2(tmp_path, mass=5.0))
-    found = tower_modes(tower, 2)
-    assert found.names == ("1st fore-aft", "1st side-side")  # I_x and I_y
+    solution = tower_modes(tower, 2)
+    assert solution.names == ("1st fore-aft", "1st side-side")  # I_x and I_y
     unit = exact(E * SECOND / (RHO * AREA))
-    np.testing.assert_allclose(found.frequencies, [unit, np.sqrt(2) * unit], rtol=3e-4)
+    np.testing.assert_allclose(solution.frequencies, [unit, np.sqrt(2) * unit], rtol=3e-4)
     assert "concentrated_mass" in str(source.unused[0])
 
 
@@ -95,9 +95,9 @@ def test_windio(tmp_path: Path, shape: str, structure: str) -> None:
     path.write_text(WINDIO.format(shape=shape, structure=structure, top=6.0))
     tower, _ = towers.read(path)
     assert tower.beam.length == 80.0
-    found = tower_modes(tower, 1).frequencies[0]
+    result = tower_modes(tower, 1).frequencies[0]
     slender = exact(E * SECOND / (1.07 * RHO * AREA))
-    assert 0.985 < found / slender < 1.0  # rotary inertia of a tube of 80 m and 6 m
+    assert 0.985 < result / slender < 1.0  # rotary inertia of a tube of 80 m and 6 m
     assert tower.beam.mass[0, 0, 0] == pytest.approx(1.07 * RHO * AREA)
     assert tower.beam.mass[0, 4, 4] == pytest.approx(RHO * SECOND)
 

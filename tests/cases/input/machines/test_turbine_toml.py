@@ -75,14 +75,14 @@ def write(folder: Path, text: str) -> Path:
 def test_a_turbine_in_toml_is_that_of_the_deck(tmp_path: Path) -> None:
     fst = deck(tmp_path)
     exact = openfast.read(fst)
-    found = turbines.read(write(tmp_path, TURBINE))
+    content = turbines.read(write(tmp_path, TURBINE))
     assert turbines.is_turbine(tmp_path / "machine.toml")
-    assert found.speed == pytest.approx(exact.speed)
-    both = [turbine_modes(machine(read.turbine), 1.0, 12) for read in (found, exact)]
+    assert content.speed == pytest.approx(exact.speed)
+    both = [turbine_modes(machine(read.turbine), 1.0, 12) for read in (content, exact)]
     np.testing.assert_allclose(both[0].frequencies, both[1].frequencies, rtol=1e-9)
     assert both[0].names == both[1].names
-    assert "AdjBlMs" in " ".join(found.source.notes)
-    assert "BldFl1Sh" not in str(found.source.unused)
+    assert "AdjBlMs" in " ".join(content.source.notes)
+    assert "BldFl1Sh" not in str(content.source.unused)
 
 
 def test_a_turbine_in_toml_can_be_verified(tmp_path: Path) -> None:
@@ -100,12 +100,12 @@ def test_a_free_generator_and_springs_under_the_tower(tmp_path: Path) -> None:
     text = TURBINE.replace("gear_ratio", 'generator = "free"\ngear_ratio')
     matrix = np.diag([2e8, 1e8, 3e9, 4e9, 5e9, 6e9]).tolist()
     text += f"\n[tower.support]\nstiffness = {matrix}\n"
-    found = turbines.read(write(tmp_path, text)).turbine
-    assert found.drivetrain.free
-    assert found.support.base is not None
+    turbine = turbines.read(write(tmp_path, text)).turbine
+    assert turbine.drivetrain.free
+    assert turbine.support.base is not None
     # ours: up, to starboard, downwind
-    np.testing.assert_allclose(np.diagonal(found.support.base), [3e9, 1e8, 2e8, 6e9, 5e9, 4e9])
-    assert turbine_modes(machine(found), 1.0, 1).frequencies[0] > 0
+    np.testing.assert_allclose(np.diagonal(turbine.support.base), [3e9, 1e8, 2e8, 6e9, 5e9, 4e9])
+    assert turbine_modes(machine(turbine), 1.0, 1).frequencies[0] > 0
 
 
 def test_a_deck_on_a_floater(tmp_path: Path) -> None:
@@ -139,10 +139,10 @@ def test_a_tower_in_toml(tmp_path: Path) -> None:
     assert towers.is_tower(path)
     assert not turbines.is_turbine(path)
     tower, source = towers.read(path)
-    found = tower_modes(tower, 2)
+    solution = tower_modes(tower, 2)
     unit = 3.51601527 / 20.0**2 * np.sqrt(1 / 100.0)
-    np.testing.assert_allclose(found.frequencies, [unit * np.sqrt(2e7), unit * np.sqrt(3e7)], rtol=1e-6)
-    assert found.names == ("1st side-side", "1st fore-aft")
+    np.testing.assert_allclose(solution.frequencies, [unit * np.sqrt(2e7), unit * np.sqrt(3e7)], rtol=1e-6)
+    assert solution.names == ("1st side-side", "1st fore-aft")
     assert "rigid ground: platform and water are not included" in source.notes
 
 

@@ -66,11 +66,11 @@ def htc(folder: Path, radius: float = 2.8, azimuth: float = 180.0, cone: float =
 @pytest.mark.parametrize("azimuth", [180.0, 60.0, -60.0])
 def test_an_htc_gives_hub_radius_and_precone(tmp_path: Path, azimuth: float) -> None:
     """The DTU 10 MW rotor: a hub of 2.8 m, the blades coned by 2.5° upwind, which is negative here; for each of its blades."""
-    found = readers.reading(htc(tmp_path, azimuth=azimuth))
-    assert found.unstated == ()
-    assert found.blade.hub_radius == pytest.approx(2.8, rel=1e-12)
-    assert np.degrees([found.blade.precone, found.blade.pitch]) == pytest.approx([-2.5, 0.0], abs=1e-9)
-    assert any("hub_radius 2.8 m, precone -2.5°" in note for note in found.source.notes)
+    reading = readers.reading(htc(tmp_path, azimuth=azimuth))
+    assert reading.unstated == ()
+    assert reading.blade.hub_radius == pytest.approx(2.8, rel=1e-12)
+    assert np.degrees([reading.blade.precone, reading.blade.pitch]) == pytest.approx([-2.5, 0.0], abs=1e-9)
+    assert any("hub_radius 2.8 m, precone -2.5°" in note for note in reading.source.notes)
 
 
 def test_a_blade_turned_in_its_bearing_is_pitched(tmp_path: Path) -> None:

@@ -85,10 +85,10 @@ def test_without_any_one_of_its_lines_a_file_is_refused_or_the_blade_is_the_same
     refused = 0
     for k in range(len(lines)):
         (folder / damaged).write_text("\n".join(lines[:k] + lines[k + 1 :]) + "\n")
-        found = read(folder / first)
-        refused += found is None
-        if found is not None:
-            assert honest(whole, found), f"without line {k + 1}: {lines[k]}"
+        content = read(folder / first)
+        refused += content is None
+        if content is not None:
+            assert honest(whole, content), f"without line {k + 1}: {lines[k]}"
     assert refused > 3
 
 
@@ -98,9 +98,9 @@ def test_cut_short_a_file_is_refused_or_the_blade_is_the_same(folder: Path, firs
     lines = (folder / damaged).read_text().splitlines()
     for k in range(len(lines)):
         (folder / damaged).write_text("\n".join(lines[:k]) + "\n")
-        found = read(folder / first)
-        if found is not None:
-            assert honest(whole, found), f"cut before line {k + 1}: {lines[k]}"
+        content = read(folder / first)
+        if content is not None:
+            assert honest(whole, content), f"cut before line {k + 1}: {lines[k]}"
 
 
 @pytest.mark.parametrize(("first", "damaged"), PAIRS)

@@ -33,17 +33,17 @@ def copied(tmp_path: Path, file: Path, old: str, new: str, count: int = 1) -> Pa
 
 
 def test_hawc2_uniform_section_is_the_beam_of_its_materials() -> None:
-    found = readers.read(ST, ON)
+    blade = readers.read(ST, ON)
     expected = uniform_blade(
         "beam", 20.0, 1.0, EA=1e9, GJ=1.2e7, EI_y=1e7, EI_z=8e7, mass=100.0, I_y=0.25, I_z=4.0, GA_y=2e8, GA_z=2e8
     )
-    np.testing.assert_allclose(found.stiffness, np.repeat(expected.stiffness[:1], 3, axis=0), rtol=1e-14, atol=1e-3)
-    np.testing.assert_allclose(found.mass, np.repeat(expected.mass[:1], 3, axis=0), rtol=1e-14, atol=1e-10)
+    np.testing.assert_allclose(blade.stiffness, np.repeat(expected.stiffness[:1], 3, axis=0), rtol=1e-14, atol=1e-3)
+    np.testing.assert_allclose(blade.mass, np.repeat(expected.mass[:1], 3, axis=0), rtol=1e-14, atol=1e-10)
 
 
 def test_hawc2_centres_off_the_half_chord_line() -> None:
-    found = readers.read(ST, OFF)
-    centres = sections(found)
+    blade = readers.read(ST, OFF)
+    centres = sections(blade)
     for where in (centres.mass_centre, centres.tension_centre, centres.shear_centre):
         np.testing.assert_allclose(where, [[0.3, -0.1]] * 3, atol=1e-12)
     np.testing.assert_allclose(centres.GJ, 1.2e7)
@@ -69,9 +69,9 @@ def test_hawc2_radii_of_gyration_are_about_the_elastic_centre(tmp_path: Path) ->
 
 
 def test_hawc2_curve_and_twist_of_the_htc() -> None:
-    found = readers.reading(HTC, Mount(hub_radius=2.0))
-    assert {p.name for p in found.source.files} == {ST.name, HTC.name}
-    blade = found.blade
+    reading = readers.reading(HTC, Mount(hub_radius=2.0))
+    assert {p.name for p in reading.source.files} == {ST.name, HTC.name}
+    blade = reading.blade
     assert blade.hub_radius == 2.0
     np.testing.assert_allclose(blade.curve[-1], [19.988, -0.10, -0.50], atol=1e-12)  # z, x, y of HAWC2's
     np.testing.assert_allclose(np.degrees(blade.twist[[0, -1]]), [-12.0, 1.0])
@@ -82,7 +82,7 @@ def test_hawc2_curve_and_twist_of_the_htc() -> None:
         np.testing.assert_allclose(blade.curve[k], [z, x, y], atol=1e-9)
         assert np.degrees(blade.twist[k]) == pytest.approx(turn, abs=1e-7)
     np.testing.assert_allclose(blade.mass, np.repeat(blade.mass[:1], 6, axis=0), rtol=1e-12, atol=1e-12)
-    (note,) = (n for n in found.source.notes if n.startswith("stations: "))
+    (note,) = (n for n in reading.source.notes if n.startswith("stations: "))
     assert note.startswith(
         "stations: 3 of the structural file and 3 more of c2_def; between them curve and twist stray"
     )
@@ -91,8 +91,8 @@ def test_hawc2_curve_and_twist_of_the_htc() -> None:
 
 def test_hawc2_structural_pitch_turns_bending_about_the_elastic_centre(tmp_path: Path) -> None:
     path = copied(tmp_path, ST, "1.000000e-01\t0.000000e+00\t3.0", "1.000000e-01\t9.000000e+01\t3.0", -1)
-    found, before = readers.read(path, OFF), readers.read(ST, OFF)
-    rotated, plain = sections(found), sections(before)
+    blade, before = readers.read(path, OFF), readers.read(ST, OFF)
+    rotated, plain = sections(blade), sections(before)
     np.testing.assert_allclose(rotated.tension_centre, plain.tension_centre, atol=1e-12)
     np.testing.assert_allclose(rotated.EI_flap, plain.EI_edge)
     np.testing.assert_allclose(rotated.EI_edge, plain.EI_flap)
@@ -142,8 +142,8 @@ def test_nrel_5mw_in_hawc2_weighs_what_it_does_in_elastodyn() -> None:
 
 
 def test_bmodes_numbers_are_where_they_belong() -> None:
-    found = readers.reading(BMI)
-    blade = found.blade
+    reading = readers.reading(BMI)
+    blade = reading.blade
     assert (blade.hub_radius, blade.length) == (2.0, 20.0)
     np.testing.assert_allclose(np.degrees([blade.precone, blade.pitch]), [3.0, 4.0])
     np.testing.assert_allclose(np.degrees(blade.twist), [-10.0, -5.0, 0.0], atol=1e-14)
@@ -165,8 +165,8 @@ def test_bmodes_numbers_are_where_they_belong() -> None:
     np.testing.assert_allclose(np.diag(blade.tip_mass), [5, 5, 5, 4, 3, 2])  # along, to the leading edge, downwind
     assert blade.tip_mass[3:, :3][2, 0] == pytest.approx(-5 * -0.1)  # the first moments of (0.2, −0.1, 0)
     assert blade.tip_mass[3:, :3][1, 2] == pytest.approx(-5 * 0.2)
-    assert any("sec_mass_mult = 2, edge_stff_mult = 1.5" in note for note in found.source.notes)
-    assert any("BModes 3 itself takes them about the mass centre" in note for note in found.source.notes)
+    assert any("sec_mass_mult = 2, edge_stff_mult = 1.5" in note for note in reading.source.notes)
+    assert any("BModes 3 itself takes them about the mass centre" in note for note in reading.source.notes)
 
 
 def test_bmodes_products_of_inertia_of_the_tip(tmp_path: Path) -> None:
@@ -198,11 +198,11 @@ def test_bmodes_decks_are_read_as_pybmodes_reads_them() -> None:
     decks = sorted((Path(pybmodes.__file__).parent / "_examples" / "sample_inputs").glob("**/*blade.bmi"))
     assert len(decks) >= 10
     for deck in decks:
-        found = readers.reading(deck)
-        theirs = read_sec_props(found.source.files[1])
-        np.testing.assert_allclose(found.blade.mass[:, 0, 0], theirs.mass_den, rtol=1e-14)
-        np.testing.assert_allclose(np.degrees(found.blade.twist), -theirs.str_tw, atol=1e-12)
-        np.testing.assert_allclose(sections(found.blade).GJ, theirs.tor_stff, rtol=1e-12)
+        reading = readers.reading(deck)
+        theirs = read_sec_props(reading.source.files[1])
+        np.testing.assert_allclose(reading.blade.mass[:, 0, 0], theirs.mass_den, rtol=1e-14)
+        np.testing.assert_allclose(np.degrees(reading.blade.twist), -theirs.str_tw, atol=1e-12)
+        np.testing.assert_allclose(sections(reading.blade).GJ, theirs.tor_stff, rtol=1e-12)
 
 
 def test_toml_written_and_read_again_is_the_same(tmp_path: Path) -> None:
@@ -261,16 +261,16 @@ def test_a_file_of_another_format_in_a_toml(tmp_path: Path) -> None:
         'name = "here"\n[blade]\nkind = "file"\nfile = "ed.dat"\nlength = 50.0\nhub_radius = 2.0\nroot = "flap hinge"\n'
     )
     (tmp_path / "b.toml").write_text(text)
-    found = readers.read(tmp_path / "b.toml")
+    blade = readers.read(tmp_path / "b.toml")
     plain = readers.read(tmp_path / "ed.dat", Mount(length=50.0, hub_radius=2.0))
-    assert (found.name, found.root[4]) == ("here", 0.0)
-    np.testing.assert_array_equal(found.mass, plain.mass)
+    assert (blade.name, blade.root[4]) == ("here", 0.0)
+    np.testing.assert_array_equal(blade.mass, plain.mass)
 
 
 def test_csv_stations(tmp_path: Path) -> None:
     path = Path(readers.__file__).parents[2] / "data" / "windpact-3.0.csv"
-    found = readers.read(path, Mount(length=47.025, hub_radius=2.475))
-    assert found.mass[0, 0, 0] == 2514.272879
+    blade = readers.read(path, Mount(length=47.025, hub_radius=2.475))
+    assert blade.mass[0, 0, 0] == 2514.272879
     with pytest.raises(CaseError, match="give --length"):
         readers.read(path)
 

@@ -125,9 +125,9 @@ def test_twist_in_degrees_in_windio_1_is_noticed_and_said(tmp_path: Path) -> Non
     one, two = samples()
     expected = readers.read(written(tmp_path / "c.yaml", one))
     one["components"]["blade"]["outer_shape_bem"]["twist"] = two["components"]["blade"]["outer_shape"]["twist"]
-    found = readers.reading(written(tmp_path / "b.yaml", one))
-    assert_same(found.blade, expected, 1e-13)
-    assert any("taken for degrees" in note for note in found.source.notes)
+    reading = readers.reading(written(tmp_path / "b.yaml", one))
+    assert_same(reading.blade, expected, 1e-13)
+    assert any("taken for degrees" in note for note in reading.source.notes)
 
 
 def test_the_cone_leans_away_from_the_tower(tmp_path: Path) -> None:
@@ -148,18 +148,18 @@ def test_stiffness_that_is_left_out_is_rigid_and_said(tmp_path: Path) -> None:
     stiffness = data["components"]["blade"]["structure"]["elastic_properties"]["stiffness_matrix"]
     for key in [k for k in stiffness if k not in ("grid", "K44", "K55", "K45")]:
         del stiffness[key]
-    found = readers.reading(written(tmp_path / "b.yaml", data))
-    held = np.isinf(found.blade.stiffness[:, range(6), range(6)])
+    reading = readers.reading(written(tmp_path / "b.yaml", data))
+    held = np.isinf(reading.blade.stiffness[:, range(6), range(6)])
     np.testing.assert_array_equal(held, [[True] * 4 + [False] * 2] * len(held))
-    np.testing.assert_allclose(found.blade.stiffness[0, 4, 4], stiffness["K55"][0])
-    np.testing.assert_allclose(found.blade.stiffness[0, 5, 5], stiffness["K44"][0])
-    assert "K11, K22, K33, K66 zero or not given: those strains are rigid" in found.source.notes
+    np.testing.assert_allclose(reading.blade.stiffness[0, 4, 4], stiffness["K55"][0])
+    np.testing.assert_allclose(reading.blade.stiffness[0, 5, 5], stiffness["K44"][0])
+    assert "K11, K22, K33, K66 zero or not given: those strains are rigid" in reading.source.notes
 
 
 def test_a_point_mass_at_the_tip_is_the_tip_mass(tmp_path: Path) -> None:
     data = put(samples()[1], f"{EP}.point_mass", {"grid": [0.0, 1.0], "mass": [0.0, 120.0]})
-    found = readers.read(written(tmp_path / "b.yaml", data))
-    np.testing.assert_array_equal(np.diag(found.tip_mass), [120.0] * 3 + [0.0] * 3)
+    blade = readers.read(written(tmp_path / "b.yaml", data))
+    np.testing.assert_array_equal(np.diag(blade.tip_mass), [120.0] * 3 + [0.0] * 3)
 
 
 def test_grids_of_stiffness_and_mass_may_differ(tmp_path: Path) -> None:
@@ -170,18 +170,18 @@ def test_grids_of_stiffness_and_mass_may_differ(tmp_path: Path) -> None:
     rows["grid"].insert(1, rows["grid"][1] / 2)
     rows["values"].insert(1, middle)
     one["components"]["blade"]["elastic_properties_mb"]["six_x_six"]["stiff_matrix"]["grid"] = [0, 0.4, 1]
-    found = readers.read(written(tmp_path / "b.yaml", one))
-    assert len(found.stations) == len(expected.stations) + 1
-    k = [int(np.abs(found.stations - s).argmin()) for s in expected.stations]
+    blade = readers.read(written(tmp_path / "b.yaml", one))
+    assert len(blade.stations) == len(expected.stations) + 1
+    k = [int(np.abs(blade.stations - s).argmin()) for s in expected.stations]
     for name in ("stiffness", "mass", "twist", "curve"):
-        np.testing.assert_allclose(getattr(found, name)[k], getattr(expected, name), rtol=1e-12, atol=1e-9)
+        np.testing.assert_allclose(getattr(blade, name)[k], getattr(expected, name), rtol=1e-12, atol=1e-9)
 
 
 def test_a_field_says_where_it_is() -> None:
-    found = yaml_fields.fields(text.Text(Path("b.yaml"), ("a:", "  b: [1,", "      2]"))).get("a", "b")
-    assert found.at == "b.yaml: line 2: a.b"
-    assert found.item(1) == "b.yaml: line 3: a.b"
-    np.testing.assert_array_equal(found.numbers(), [1, 2])
+    result = yaml_fields.fields(text.Text(Path("b.yaml"), ("a:", "  b: [1,", "      2]"))).get("a", "b")
+    assert result.at == "b.yaml: line 2: a.b"
+    assert result.item(1) == "b.yaml: line 3: a.b"
+    np.testing.assert_array_equal(result.numbers(), [1, 2])
 
 
 def test_the_published_iea15_is_its_beamdyn_deck() -> None:
@@ -189,13 +189,13 @@ def test_the_published_iea15_is_its_beamdyn_deck() -> None:
     windio = pytest.importorskip("windIO", reason="its package ships the file: pip install windIO")
     path = Path(windio.__file__).parent / "examples" / "turbine" / "IEA-15-240-RWT.yaml"
     deck = readers.read(real("iea15/IEA-15-240-RWT_BeamDyn_blade.dat"), Mount(length=117.0))
-    found = readers.read(path)
-    k = [int(np.abs(found.stations / found.length - eta).argmin()) for eta in deck.stations / deck.length]
+    blade = readers.read(path)
+    k = [int(np.abs(blade.stations / blade.length - eta).argmin()) for eta in deck.stations / deck.length]
     for name in ("stiffness", "mass"):
-        ours, theirs = getattr(found, name)[k], getattr(deck, name)
+        ours, theirs = getattr(blade, name)[k], getattr(deck, name)
         scale = np.sqrt(np.einsum("nii,njj->nij", theirs, theirs))
         np.testing.assert_allclose(ours / scale, theirs / scale, atol=1e-10)
-    assert (found.hub_radius, np.degrees(found.precone)) == (3.97, pytest.approx(-4.0))
-    np.testing.assert_allclose(found.curve[-1], [117.0, 0.0, -4.0], atol=1e-9)
-    ahead = sections(found).shear_centre[k[15], 0] - sections(found).mass_centre[k[15], 0]
+    assert (blade.hub_radius, np.degrees(blade.precone)) == (3.97, pytest.approx(-4.0))
+    np.testing.assert_allclose(blade.curve[-1], [117.0, 0.0, -4.0], atol=1e-9)
+    ahead = sections(blade).shear_centre[k[15], 0] - sections(blade).mass_centre[k[15], 0]
     assert ahead > 0  # the spar carries the shear, the trailing edge's mass lies behind it

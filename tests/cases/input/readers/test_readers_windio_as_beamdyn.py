@@ -13,11 +13,11 @@ from southwell.tests.support.blade_files import assert_same, samples, written
 
 @pytest.mark.parametrize("version", [1, 2])
 def test_it_is_the_beamdyn_blade(tmp_path: Path, version: int) -> None:
-    found = readers.reading(written(tmp_path / "b.yaml", samples()[version - 1]))
+    reading = readers.reading(written(tmp_path / "b.yaml", samples()[version - 1]))
     expected = readers.read(DATA / "beamdyn_main.dat", Mount(hub_radius=1.5, precone=-0.04))
-    assert_same(found.blade, expected, 1e-13)
-    assert found.blade.name == "invented"
-    assert found.source.format == f"windIO {version}"
+    assert_same(reading.blade, expected, 1e-13)
+    assert reading.blade.name == "invented"
+    assert reading.source.format == f"windIO {version}"
 
 
 def test_numbers_without_a_point_in_their_exponent_are_numbers(tmp_path: Path) -> None:

@@ -43,22 +43,22 @@ def primary(
 
 
 def test_to_elastodyns_blade(folder: Path) -> None:
-    found = readers.reading(primary(folder))
-    assert_same(found.blade, readers.read(DATA / "elastodyn_main.dat"))
-    assert [p.name for p in found.source.files] == ["machine.fst", "elastodyn_blade.dat", "elastodyn_main.dat"]
-    assert "BlPitch" in {u.name for u in found.source.unused}
+    reading = readers.reading(primary(folder))
+    assert_same(reading.blade, readers.read(DATA / "elastodyn_main.dat"))
+    assert [p.name for p in reading.source.files] == ["machine.fst", "elastodyn_blade.dat", "elastodyn_main.dat"]
+    assert "BlPitch" in {u.name for u in reading.source.unused}
 
 
 def test_to_beamdyns_blade_on_elastodyns_hub(folder: Path) -> None:
     main = folder / "parts" / "elastodyn_main.dat"
     main.write_text(main.read_text().replace("         52   TipRad", "    42.0578   TipRad"))
-    found = readers.reading(primary(folder, "2"))
+    reading = readers.reading(primary(folder, "2"))
     alone = readers.read(DATA / "beamdyn_main.dat")
-    np.testing.assert_array_equal(found.blade.curve, alone.curve)
-    np.testing.assert_array_equal(found.blade.stiffness, alone.stiffness)
-    assert found.blade.hub_radius == 2.0
-    assert np.degrees(found.blade.precone) == pytest.approx(-2.5)
-    assert found.blade.tip_mass[0, 0] == 40.0
+    np.testing.assert_array_equal(reading.blade.curve, alone.curve)
+    np.testing.assert_array_equal(reading.blade.stiffness, alone.stiffness)
+    assert reading.blade.hub_radius == 2.0
+    assert np.degrees(reading.blade.precone) == pytest.approx(-2.5)
+    assert reading.blade.tip_mass[0, 0] == 40.0
 
 
 def test_a_primary_file_of_fast_8_without_compelast(folder: Path) -> None:
@@ -68,11 +68,11 @@ def test_a_primary_file_of_fast_8_without_compelast(folder: Path) -> None:
 
 
 def test_fast_7s_primary_file_is_the_main_file() -> None:
-    found = readers.reading(DATA / "fast7_main.fst")
-    assert found.blade.hub_radius == 1.5
-    assert np.degrees(found.blade.precone) == pytest.approx(3.0)
-    assert found.blade.curve[-1, 0] == 40.0
-    assert_same(found.blade, readers.read(DATA / "fast7_blade.dat"))  # which finds the .fst beside it
+    reading = readers.reading(DATA / "fast7_main.fst")
+    assert reading.blade.hub_radius == 1.5
+    assert np.degrees(reading.blade.precone) == pytest.approx(3.0)
+    assert reading.blade.curve[-1, 0] == 40.0
+    assert_same(reading.blade, readers.read(DATA / "fast7_blade.dat"))  # which finds the .fst beside it
 
 
 @pytest.mark.parametrize(

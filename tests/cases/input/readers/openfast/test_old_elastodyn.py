@@ -92,8 +92,8 @@ def test_an_axis_parallel_to_the_pitch_axis_is_a_beam_with_its_mass_off_its_axis
         mass=np.stack([m, m]),
         twist=np.zeros(2),
     )
-    found = modes(readers.read(path, MOUNT), 0.0, elements=20, modes=6).frequencies
-    np.testing.assert_allclose(found, modes(by_hand, 0.0, elements=20, modes=6).frequencies, rtol=1e-9)
+    frequencies = modes(readers.read(path, MOUNT), 0.0, elements=20, modes=6).frequencies
+    np.testing.assert_allclose(frequencies, modes(by_hand, 0.0, elements=20, modes=6).frequencies, rtol=1e-9)
 
 
 def test_the_stations_are_arc_lengths_of_the_axis(tmp_path: Path) -> None:
@@ -105,11 +105,11 @@ def test_the_stations_are_arc_lengths_of_the_axis(tmp_path: Path) -> None:
 
 
 def test_offsets_can_be_left_out_and_are_then_listed(tmp_path: Path) -> None:
-    found = readers.reading(BLADE, replace(MOUNT, offsets=False))
+    reading = readers.reading(BLADE, replace(MOUNT, offsets=False))
     zero = readers.reading(table(tmp_path, {}), replace(MOUNT, offsets=False))
-    np.testing.assert_array_equal(found.blade.curve[:, 1:], 0.0)
-    assert not sections(found.blade).mass_centre.any()
-    said = {u.name: u for u in found.source.unused}
+    np.testing.assert_array_equal(reading.blade.curve[:, 1:], 0.0)
+    assert not sections(reading.blade).mass_centre.any()
+    said = {u.name: u for u in reading.source.unused}
     assert said["PrecrvRef"].largest == 0.9
     assert said["EdgcgOf"].largest == 0.16  # the file writes Edgcgof
     assert set(OFFSETS) <= set(said)
@@ -117,9 +117,9 @@ def test_offsets_can_be_left_out_and_are_then_listed(tmp_path: Path) -> None:
 
 
 def test_used_offsets_are_noted_and_not_listed() -> None:
-    found = readers.reading(BLADE, MOUNT)
-    assert not set(OFFSETS) & {u.name for u in found.source.unused}
-    assert any("PrecrvRef 0.9 m" in note and "EdgcgOf 0.16 m" in note for note in found.source.notes)
+    reading = readers.reading(BLADE, MOUNT)
+    assert not set(OFFSETS) & {u.name for u in reading.source.unused}
+    assert any("PrecrvRef 0.9 m" in note and "EdgcgOf 0.16 m" in note for note in reading.source.notes)
 
 
 def test_the_same_in_a_case_file(tmp_path: Path) -> None:

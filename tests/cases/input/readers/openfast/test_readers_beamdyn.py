@@ -25,31 +25,31 @@ STRAIGHT = Mount(length=40.0)
 
 def test_matrices_keep_their_energy_and_the_centres_their_side() -> None:
     """Their x, y, z are our z, −y, x: so are velocities, strains and centres; energies stay."""
-    found = beamdyn.read(BLADE, Mount(length=40.0, main=MAIN)).blade
+    blade = beamdyn.read(BLADE, Mount(length=40.0, main=MAIN)).blade
     text = BLADE.read_text().split("DISTRIBUTED PROPERTIES---------------------------------\n")[1].split()
     stiffness, mass = (np.array(text[1 + 36 * k : 37 + 36 * k], float).reshape(6, 6) for k in (0, 1))
     rng = np.random.default_rng(1)
     for theirs in rng.standard_normal((5, 6)):
         vx, vy, vz, wx, wy, wz = theirs
         ours = np.array([vz, -vy, vx, wz, -wy, wx])
-        assert ours @ found.mass[0] @ ours == pytest.approx(theirs @ mass @ theirs, rel=1e-12)
-        assert ours @ found.stiffness[0] @ ours == pytest.approx(theirs @ stiffness @ theirs, rel=1e-12)
-    m = found.mass[0]
+        assert ours @ blade.mass[0] @ ours == pytest.approx(theirs @ mass @ theirs, rel=1e-12)
+        assert ours @ blade.stiffness[0] @ ours == pytest.approx(theirs @ stiffness @ theirs, rel=1e-12)
+    m = blade.mass[0]
     assert m[0, 0] == 300.0
     assert (-m[0, 5] / 300, m[0, 4] / 300) == pytest.approx((0.2, 0.05))  # 0.2 m ahead, 0.05 m downwind
 
 
 def test_positions_and_twist_are_the_splines_through_the_key_points() -> None:
-    found = readers.read(MAIN)
+    blade = readers.read(MAIN)
     x, y, _twist = (CubicSpline(Z, v, bc_type="natural") for v in (X, Y, [12.0, 10, 7, 4, 1]))
     length = quad(lambda z: np.sqrt(1 + x(z, 1) ** 2 + y(z, 1) ** 2), 0, 40, epsabs=1e-12, points=Z[1:-1])[0]
-    assert found.length == pytest.approx(length, rel=1e-12)
-    at = found.curve[:, 0]
+    assert blade.length == pytest.approx(length, rel=1e-12)
+    at = blade.curve[:, 0]
     assert len(at) == 3 + 3  # stations at 0, 0.4, 1; key points between
-    np.testing.assert_allclose(found.curve, np.stack([at, -y(at), x(at)], axis=1), atol=1e-13)
-    k = int(np.argmin(np.abs(found.stations - 0.4 * length)))
-    assert found.stations[k] == pytest.approx(0.4 * length, rel=1e-14)
-    np.testing.assert_allclose(found.stiffness[k] * 2, found.stiffness[0], rtol=1e-12)
+    np.testing.assert_allclose(blade.curve, np.stack([at, -y(at), x(at)], axis=1), atol=1e-13)
+    k = int(np.argmin(np.abs(blade.stations - 0.4 * length)))
+    assert blade.stations[k] == pytest.approx(0.4 * length, rel=1e-14)
+    np.testing.assert_allclose(blade.stiffness[k] * 2, blade.stiffness[0], rtol=1e-12)
 
 
 def test_sections_stand_in_space_as_beamdyn_stands_them(tmp_path: Path) -> None:
@@ -62,8 +62,8 @@ def test_sections_stand_in_space_as_beamdyn_stands_them(tmp_path: Path) -> None:
     table = "\n".join(" ".join(f"{v:.12f}" for v in row) for row in rows)
     (tmp_path / "m.dat").write_text(text[:first] + table + "\n" + text[last:])
     (tmp_path / BLADE.name).write_text(BLADE.read_text())
-    found = readers.read(tmp_path / "m.dat")
-    at = found.curve[:, 0] / 40
+    blade = readers.read(tmp_path / "m.dat")
+    at = blade.curve[:, 0] / 40
     t = np.stack([np.ones_like(at), -6 * at**2 / 40, -9 * at**2 / 40], axis=1)
     t /= np.linalg.norm(t, axis=1)[:, None]
     flat = np.cross(t, [0.0, 1.0, 0.0])
@@ -72,7 +72,7 @@ def test_sections_stand_in_space_as_beamdyn_stands_them(tmp_path: Path) -> None:
     expected = np.cos(turn) * flat - np.sin(turn) * np.cross(t, flat)
     assert 6 * 9 / 40**2 / 2 > 0.015
     # the natural end of the splines bends the tangent over the last piece, 3/8 m
-    np.testing.assert_allclose(frames(found, found.stations)[:-4, :3, 2], expected[:-4], atol=3e-4)
+    np.testing.assert_allclose(frames(blade, blade.stations)[:-4, :3, 2], expected[:-4], atol=3e-4)
 
 
 def test_old_and_new_headers_are_read_alike() -> None:
@@ -89,8 +89,8 @@ def test_elastodyns_main_file_says_how_it_is_mounted(tmp_path: Path) -> None:
         (tmp_path / path.name).write_text(path.read_text())
     hub = tmp_path / "ElastoDyn.dat"
     hub.write_text((DATA / "elastodyn_main.dat").read_text().replace("         52   Tip", "       42.1   Tip"))
-    found = beamdyn.read(tmp_path / MAIN.name, Mount(main=hub)).blade
-    assert (found.hub_radius, np.degrees(found.precone), found.tip_mass[0, 0]) == pytest.approx((2.0, -2.5, 40.0))
+    blade = beamdyn.read(tmp_path / MAIN.name, Mount(main=hub)).blade
+    assert (blade.hub_radius, np.degrees(blade.precone), blade.tip_mass[0, 0]) == pytest.approx((2.0, -2.5, 40.0))
     hub.write_text((DATA / "elastodyn_main.dat").read_text())
     with pytest.raises(CaseError, match=r"length: 50 m by the main file or --length, 40\.\d+ m by the key points"):
         beamdyn.read(tmp_path / MAIN.name, Mount(main=hub))
@@ -98,9 +98,9 @@ def test_elastodyns_main_file_says_how_it_is_mounted(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize("path", [MAIN, OLD])
 def test_written_and_read_again_it_is_the_same(tmp_path: Path, path: Path) -> None:
-    found = beamdyn.read(path, Mount(hub_radius=1.5, precone=-0.04, pitch=0.1)).blade
-    mount = beamdyn_write.write(found, tmp_path / path.name)
-    assert_same(found, beamdyn.read(tmp_path / path.name, mount).blade, 1e-13)
+    blade = beamdyn.read(path, Mount(hub_radius=1.5, precone=-0.04, pitch=0.1)).blade
+    mount = beamdyn_write.write(blade, tmp_path / path.name)
+    assert_same(blade, beamdyn.read(tmp_path / path.name, mount).blade, 1e-13)
 
 
 def test_rigid_strains_are_not_written(tmp_path: Path) -> None:

@@ -21,25 +21,25 @@ MOUNT = Mount(length=50.0, hub_radius=2.0)
 
 
 def test_every_number_of_the_file_is_where_it_belongs() -> None:
-    found = elastodyn.read(BLADE, MOUNT).blade
-    np.testing.assert_allclose(found.stations, [0, 10, 25, 40, 50])
-    d = np.diagonal(found.stiffness, axis1=1, axis2=2)
+    blade = elastodyn.read(BLADE, MOUNT).blade
+    np.testing.assert_allclose(blade.stations, [0, 10, 25, 40, 50])
+    d = np.diagonal(blade.stiffness, axis1=1, axis2=2)
     np.testing.assert_allclose(d[:, 4], 1.5 * np.array([1.8e10, 4e9, 6e8, 7e7, 2e6]))  # flap, AdjFlSt
     np.testing.assert_allclose(d[:, 5], 0.75 * np.array([1.85e10, 7.2e9, 2.6e9, 6.4e8, 2.2e7]))  # edge, AdjEdSt
     assert np.isinf(d[:, :4]).all()
-    np.testing.assert_allclose(found.mass[:, 0, 0], 1.25 * np.array([700, 410, 260, 120, 15]))  # AdjBlMs
-    assert not found.mass[:, 3:].any()
-    np.testing.assert_allclose(np.degrees(found.twist), [-12.5, -11, -6.5, -2.25, 0])  # leading edge upwind: −z
+    np.testing.assert_allclose(blade.mass[:, 0, 0], 1.25 * np.array([700, 410, 260, 120, 15]))  # AdjBlMs
+    assert not blade.mass[:, 3:].any()
+    np.testing.assert_allclose(np.degrees(blade.twist), [-12.5, -11, -6.5, -2.25, 0])  # leading edge upwind: −z
 
 
 def test_other_multipliers_can_be_given() -> None:
-    found = readers.reading(BLADE, replace(MOUNT, multipliers=(1.0, 3.0, 1.5)))
+    reading = readers.reading(BLADE, replace(MOUNT, multipliers=(1.0, 3.0, 1.5)))
     own = readers.reading(BLADE, MOUNT)
-    np.testing.assert_allclose(found.blade.mass[0, 0, 0], 700)
-    np.testing.assert_allclose(found.blade.mass, own.blade.mass / 1.25)
-    held = found.blade.stiffness[:, 4:, 4:] / np.where(np.eye(2), own.blade.stiffness[:, 4:, 4:], 1)
+    np.testing.assert_allclose(reading.blade.mass[0, 0, 0], 700)
+    np.testing.assert_allclose(reading.blade.mass, own.blade.mass / 1.25)
+    held = reading.blade.stiffness[:, 4:, 4:] / np.where(np.eye(2), own.blade.stiffness[:, 4:, 4:], 1)
     np.testing.assert_allclose(held, np.diag([2.0, 2.0])[None].repeat(len(held), axis=0))
-    assert "AdjBlMs = 1.25, AdjFlSt = 1.5, AdjEdSt = 0.75: replaced by 1, 3, 1.5" in found.source.notes
+    assert "AdjBlMs = 1.25, AdjFlSt = 1.5, AdjEdSt = 0.75: replaced by 1, 3, 1.5" in reading.source.notes
 
 
 def test_multipliers_of_another_format_are_refused() -> None:
@@ -50,19 +50,19 @@ def test_multipliers_of_another_format_are_refused() -> None:
 @pytest.mark.parametrize("path", [BLADE, MAIN])
 def test_the_hub_is_the_main_files_whichever_is_named(path: Path) -> None:
     """The blade file alone is found to be named by the main file beside it."""
-    found = readers.reading(path)
-    assert (found.blade.length, found.blade.hub_radius) == (50.0, 2.0)
-    assert np.degrees(found.blade.precone) == pytest.approx(-2.5)  # upwind
-    assert found.blade.pitch == 0.0  # BlPitch is the initial pitch of a simulation: listed, not used
-    (pitch,) = [u for u in found.source.unused if u.name == "BlPitch"]
+    reading = readers.reading(path)
+    assert (reading.blade.length, reading.blade.hub_radius) == (50.0, 2.0)
+    assert np.degrees(reading.blade.precone) == pytest.approx(-2.5)  # upwind
+    assert reading.blade.pitch == 0.0  # BlPitch is the initial pitch of a simulation: listed, not used
+    (pitch,) = [u for u in reading.source.unused if u.name == "BlPitch"]
     assert (pitch.largest, pitch.unit) == (3.0, "deg")
-    np.testing.assert_allclose(np.diag(found.blade.tip_mass), [40, 40, 40, 0, 0, 0])
-    assert {p.name for p in found.source.files} == {BLADE.name, MAIN.name}
+    np.testing.assert_allclose(np.diag(reading.blade.tip_mass), [40, 40, 40, 0, 0, 0])
+    assert {p.name for p in reading.source.files} == {BLADE.name, MAIN.name}
 
 
 def test_what_is_given_goes_before_what_the_main_file_says() -> None:
-    found = readers.read(BLADE, Mount(main=MAIN, hub_radius=3.0, precone=0.1))
-    assert (found.length, found.hub_radius, found.precone) == (50.0, 3.0, 0.1)
+    blade = readers.read(BLADE, Mount(main=MAIN, hub_radius=3.0, precone=0.1))
+    assert (blade.length, blade.hub_radius, blade.precone) == (50.0, 3.0, 0.1)
 
 
 def test_two_main_files_that_name_a_blade_are_not_chosen_from(tmp_path: Path) -> None:
@@ -84,9 +84,9 @@ def test_what_else_lies_beside_it_does_not_matter(tmp_path: Path) -> None:
 
 
 def test_written_and_read_again_it_is_the_same(tmp_path: Path) -> None:
-    found = elastodyn.read(BLADE, MOUNT).blade
+    blade = elastodyn.read(BLADE, MOUNT).blade
     path = tmp_path / BLADE.name
-    assert_same(found, elastodyn.read(path, elastodyn_write.write(found, path)).blade)
+    assert_same(blade, elastodyn.read(path, elastodyn_write.write(blade, path)).blade)
 
 
 def test_what_the_format_cannot_hold_is_not_written(tmp_path: Path) -> None:
@@ -104,12 +104,12 @@ def test_fast_7_columns_give_stretch_torsion_and_moments_of_inertia(tmp_path: Pa
         f"{line} {1e8 - k} {2e9 - k} {3 + k} {4 + k}" for k, line in enumerate(lines[head + 2 : head + 7])
     ]
     (tmp_path / "b.dat").write_text("\n".join(lines))
-    found = readers.read(tmp_path / "b.dat", MOUNT)
-    np.testing.assert_allclose(found.stiffness[:, 3, 3], 1e8 - np.arange(5))
-    np.testing.assert_allclose(found.stiffness[:, 0, 0], 2e9 - np.arange(5))
-    np.testing.assert_allclose(found.mass[:, 4, 4], 3.0 + np.arange(5))  # about y: flap
-    np.testing.assert_allclose(found.mass[:, 5, 5], 4.0 + np.arange(5))
-    np.testing.assert_allclose(found.mass[:, 3, 3], 7.0 + 2 * np.arange(5))
+    blade = readers.read(tmp_path / "b.dat", MOUNT)
+    np.testing.assert_allclose(blade.stiffness[:, 3, 3], 1e8 - np.arange(5))
+    np.testing.assert_allclose(blade.stiffness[:, 0, 0], 2e9 - np.arange(5))
+    np.testing.assert_allclose(blade.mass[:, 4, 4], 3.0 + np.arange(5))  # about y: flap
+    np.testing.assert_allclose(blade.mass[:, 5, 5], 4.0 + np.arange(5))
+    np.testing.assert_allclose(blade.mass[:, 3, 3], 7.0 + 2 * np.arange(5))
 
 
 NODES = np.array([2.8667, 5.6, 8.3333, *np.arange(11.75, 53, 4.1), 56.1667, 58.9, 61.6333])
@@ -122,8 +122,8 @@ def test_nrel_5mw_has_the_mass_and_moments_of_its_report() -> None:
     The report's AdjBlMs of 1.04536 was chosen for FAST's sums over the 17 nodes of Table 3-1, which are made here; the
     widths are printed to 0.1 mm, which leaves 4e-6 of the second moment open. The integral of the table is 0.7 % less.
     """
-    found = elastodyn.read(real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"), Mount(length=61.5, hub_radius=1.5)).blade
-    lumps, s = mass_at(found, NODES - 1.5)[:, 0, 0] * WIDTHS, NODES - 1.5
+    blade = elastodyn.read(real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"), Mount(length=61.5, hub_radius=1.5)).blade
+    lumps, s = mass_at(blade, NODES - 1.5)[:, 0, 0] * WIDTHS, NODES - 1.5
     assert lumps.sum() == pytest.approx(17740, abs=0.5)
     assert lumps @ s == pytest.approx(363231, abs=0.5)
     assert lumps @ s**2 == pytest.approx(11776047, rel=4e-6)
@@ -136,12 +136,12 @@ def test_decks_that_come_with_pybmodes_are_read_as_it_reads_them() -> None:
     from pybmodes.io.elastodyn_reader import read_elastodyn_blade, read_elastodyn_main
 
     for deck in decks:
-        found = elastodyn.read(deck)
+        content = elastodyn.read(deck)
         main = read_elastodyn_main(deck)
-        theirs = read_elastodyn_blade(found.source.files[0])
-        assert found.blade.length == pytest.approx(main.tip_rad - main.hub_rad, rel=1e-14)
-        np.testing.assert_allclose(found.blade.stiffness[:, 4, 4], theirs.adj_fl_st * theirs.flp_stff, rtol=1e-14)
-        np.testing.assert_allclose(found.blade.mass[:, 0, 0], theirs.adj_bl_ms * theirs.b_mass_den, rtol=1e-14)
+        theirs = read_elastodyn_blade(content.source.files[0])
+        assert content.blade.length == pytest.approx(main.tip_rad - main.hub_rad, rel=1e-14)
+        np.testing.assert_allclose(content.blade.stiffness[:, 4, 4], theirs.adj_fl_st * theirs.flp_stff, rtol=1e-14)
+        np.testing.assert_allclose(content.blade.mass[:, 0, 0], theirs.adj_bl_ms * theirs.b_mass_den, rtol=1e-14)
 
 
 def edited(tmp_path: Path, old: str, new: str, count: int = 1) -> Path:

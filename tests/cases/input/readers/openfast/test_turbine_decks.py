@@ -24,13 +24,13 @@ NREL = Path(os.environ.get("SOUTHWELL_BLADES", "missing")).parent / "linearised"
 
 def test_a_tower_file_is_a_beam_that_stands(tmp_path: Path) -> None:
     deck(tmp_path)
-    found = readers.reading(tmp_path / "tower.dat")
-    tower = found.blade
+    reading = readers.reading(tmp_path / "tower.dat")
+    tower = reading.blade
     assert tower.length == 30.0
-    assert found.speed == 0.0
+    assert reading.speed == 0.0
     assert tower.stiffness[0, 4, 4] == pytest.approx(1.1 * 9e9)  # bends fore-aft, with AdjFASt
     assert tower.stiffness[0, 5, 5] == pytest.approx(8e9)
-    assert [str(u).split(":")[1].split("(")[0].strip() for u in found.source.unused] == [
+    assert [str(u).split(":")[1].split("(")[0].strip() for u in reading.source.unused] == [
         "TwrFADmp",
         "TwFAM1Sh … TwSSM2Sh",
     ]
@@ -52,29 +52,29 @@ def test_a_deck_is_a_turbine(tmp_path: Path) -> None:
     path = deck(tmp_path)
     assert turbine.is_turbine(path)
     read = turbine.read(path)
-    found = read.turbine
-    assert found.gravity == 9.81
-    assert found.yaw == 3e7
-    assert not found.drivetrain.free
-    assert found.drivetrain.gear_ratio == 50.0
+    result = read.turbine
+    assert result.gravity == 9.81
+    assert result.yaw == 3e7
+    assert not result.drivetrain.free
+    assert result.drivetrain.gear_ratio == 50.0
     assert read.speed == pytest.approx(20 * np.pi / 30)
     # nacelle: 9 t at (0.6, 0.2, 0.9) in OpenFAST's axes is at (0.9, −0.2, 0.6) here, and 100 kg at the tower's top
-    mass, static = found.nacelle[0, 0], found.nacelle[:3, 3:]
+    mass, static = result.nacelle[0, 0], result.nacelle[:3, 3:]
     assert mass == pytest.approx(9100.0)
     np.testing.assert_allclose(
         [static[1, 2], static[2, 0], static[0, 1]], 9000 * np.array([0.9, -0.2, 0.6]), rtol=1e-12
     )
-    assert found.nacelle[3, 3] == pytest.approx(20000.0)  # about the yaw axis, as given
+    assert result.nacelle[3, 3] == pytest.approx(20000.0)  # about the yaw axis, as given
     unused = " ".join(str(u) for u in read.source.unused)
     assert "DTTorDmp" in unused
     assert "PtfmMass" not in unused
 
 
 def test_a_generator_or_a_yaw_bearing_as_the_deck_says(tmp_path: Path) -> None:
-    found = turbine.read(deck(tmp_path, free=True, yaw=False)).turbine
-    assert found.drivetrain.free
-    assert np.isinf(found.yaw)
-    names = turbine_modes(machine(found), 1.0, 10).names
+    result = turbine.read(deck(tmp_path, free=True, yaw=False)).turbine
+    assert result.drivetrain.free
+    assert np.isinf(result.yaw)
+    names = turbine_modes(machine(result), 1.0, 10).names
     assert "drivetrain torsion" in names
     assert "1st edge collective" not in names[:6]
 
