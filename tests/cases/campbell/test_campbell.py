@@ -65,54 +65,54 @@ def test_southwells_coefficients_are_those_the_modes_were_made_with() -> None:
 def test_a_fits_residual_is_its_largest_deviation() -> None:
     """ω² = 4 + Ω⁴ at Ω = 0, 1, 2: least squares gives a = 10/3…, by hand: Ω² = (0, 1, 4), ω² = (4, 5, 20)."""
     bent = lambda omega: replace(southwell(omega), frequencies=np.sqrt([4.0 + omega**4, 400.0 + omega**2]))  # noqa: E731
-    found = campbell(BLADE, CampbellRequest((0.0, 1.0, 2.0), modes=2), bent).southwell[0]
+    result = campbell(BLADE, CampbellRequest((0.0, 1.0, 2.0), modes=2), bent).southwell[0]
     x, y = np.array([0.0, 1.0, 4.0]), np.array([4.0, 5.0, 20.0])
     slope = ((x - x.mean()) * (y - y.mean())).sum() / ((x - x.mean()) ** 2).sum()
     rest = y.mean() - slope * x.mean()
-    assert found is not None
-    assert found.coefficient == pytest.approx(slope, rel=1e-12)
-    assert found.residual == pytest.approx(np.abs(np.sqrt((rest + slope * x) / y) - 1).max(), rel=1e-9)
+    assert result is not None
+    assert result.coefficient == pytest.approx(slope, rel=1e-12)
+    assert result.residual == pytest.approx(np.abs(np.sqrt((rest + slope * x) / y) - 1).max(), rel=1e-9)
 
 
 def test_resonances_are_where_the_closed_form_says() -> None:
     """ω₀² + φ Ω² = n² Ω² at Ω = ω₀ / √(n² − φ): flap never meets 1P; within 4 rad/s edge meets 1P not."""
-    found = {(r.track, r.per_rev): r for r in diagram().resonances}
+    result = {(r.track, r.per_rev): r for r in diagram().resonances}
     expected = {(0, n): 2.0 / np.sqrt(n**2 - 1.5) for n in (2, 3)} | {(1, n): 3.0 / np.sqrt(n**2 - 0.5) for n in (2, 3)}
-    assert set(found) == set(expected)
+    assert set(result) == set(expected)
     for key, omega in expected.items():
-        assert found[key].omega == pytest.approx(omega, rel=1e-9)
-        assert found[key].frequency == pytest.approx(key[1] * omega, rel=1e-9)
+        assert result[key].omega == pytest.approx(omega, rel=1e-9)
+        assert result[key].frequency == pytest.approx(key[1] * omega, rel=1e-9)
 
 
 def test_a_resonances_distance_from_the_operating_range_is_to_its_nearer_end() -> None:
-    found = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.8, 1.0)).resonances}
-    assert found[0, 3] == pytest.approx(2.0 / np.sqrt(7.5) / 0.8 - 1)  # 0.730 rad/s: below
-    assert found[1, 2] == pytest.approx(3.0 / np.sqrt(3.5) / 1.0 - 1)  # 1.604 rad/s: above
+    result = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.8, 1.0)).resonances}
+    assert result[0, 3] == pytest.approx(2.0 / np.sqrt(7.5) / 0.8 - 1)  # 0.730 rad/s: below
+    assert result[1, 2] == pytest.approx(3.0 / np.sqrt(3.5) / 1.0 - 1)  # 1.604 rad/s: above
     inside = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.7, 2.0)).resonances}
     assert inside[0, 3] == inside[1, 2] == 0.0
     assert all(r.apart is None for r in diagram(operating=None).resonances)
 
 
 def test_margins_at_the_ends_and_the_least_are_those_of_the_closed_form() -> None:
-    found = {(m.track, m.per_rev): m for m in diagram().margins}
-    assert len(found) == 6
-    for (t, n), m in found.items():
+    result = {(m.track, m.per_rev): m for m in diagram().margins}
+    assert len(result) == 6
+    for (t, n), m in result.items():
         square = (lambda o: 4 + 1.5 * o**2, lambda o: 9 + 0.5 * o**2)[t]
         ends = [np.sqrt(square(o)) / (n * o) - 1 for o in (1.0, 2.0)]
         assert (m.low, m.high) == (pytest.approx(ends[0], rel=1e-9), pytest.approx(ends[1], rel=1e-9))
         meets = ends[0] * ends[1] < 0
         assert m.least == pytest.approx(0.0 if meets else min(ends, key=abs), rel=1e-9)
         assert m.kept == (abs(m.least) >= 0.1)
-    assert not found[0, 2].kept
-    assert found[0, 2].omega == pytest.approx(2.0 / np.sqrt(2.5), rel=1e-9)
+    assert not result[0, 2].kept
+    assert result[0, 2].omega == pytest.approx(2.0 / np.sqrt(2.5), rel=1e-9)
 
 
 def test_a_margin_is_judged_by_what_the_user_asks() -> None:
     """Flap at 2 rad/s is √10 rad/s, 58 % above 1P."""
     exact = np.sqrt(10.0) / 2.0 - 1.0
     for margin, kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
-        (found,) = (m for m in diagram(margin=RequiredMargin(margin), per_rev=(1,)).margins if m.track == 0)
-        assert found.kept is kept
+        (result,) = (m for m in diagram(margin=RequiredMargin(margin), per_rev=(1,)).margins if m.track == 0)
+        assert result.kept is kept
 
 
 def test_a_margin_in_hertz_is_the_distance_itself() -> None:
@@ -120,21 +120,21 @@ def test_a_margin_in_hertz_is_the_distance_itself() -> None:
     ends = [np.sqrt(4 + 1.5 * o**2) - o for o in (1.0, 2.0)]
     exact = ends[1] / (2 * np.pi)
     for text, kept in ((f"{exact - 1e-6}Hz", True), (f"{exact + 1e-6} Hz", False), (f"{ends[1] - 1e-6}rad/s", True)):
-        found = diagram(margin=required_margin(text), per_rev=(1,))
-        (flap,) = (m for m in found.margins if m.track == 0)
+        result = diagram(margin=required_margin(text), per_rev=(1,))
+        (flap,) = (m for m in result.margins if m.track == 0)
         assert (flap.low, flap.high) == pytest.approx(ends, rel=1e-9)
         assert flap.kept is kept
     assert "stays at least 0.1 Hz away" in verdict(diagram(margin=required_margin("0.1Hz"), per_rev=(1,)), RAD_S)
-    margins = next(s for s in sheets(found, RAD_S) if s.title.startswith("Margins"))
+    margins = next(s for s in sheets(result, RAD_S) if s.title.startswith("Margins"))
     assert margins.rows[0][1] == "+1.35…+1.16"
     assert "in rad/s" in margins.note
 
 
 def test_lines_are_confirmed_at_the_stated_ends_of_the_operating_range() -> None:
     """With 6.9:12.1 rpm they once were confirmed at 6.6 rpm, the nearest requested speed."""
-    found = diagram(operating=(1.03, 1.97))
-    assert confirmation.speeds(found) == (1.03, 1.97)
-    assert {1.03, 1.97} <= set(found.tracks.omega.tolist())
+    result = diagram(operating=(1.03, 1.97))
+    assert confirmation.speeds(result) == (1.03, 1.97)
+    assert {1.03, 1.97} <= set(result.tracks.omega.tolist())
     assert confirmation.speeds(diagram(operating=None)) == (0.0, 4.0)
     nearly = diagram(operating=(1.0 + 1e-12, 2.0 - 1e-12))
     assert confirmation.speeds(nearly) == (1.0, 2.0)
@@ -182,9 +182,9 @@ def test_the_speed_without_a_steady_state_is_told() -> None:
 
 def test_core_has_the_modes_at_n_per_revolution_where_the_diagram_says() -> None:
     blade = library.load("park-blade").variants[0].blade
-    found = campbell(blade, CampbellRequest(tuple(np.arange(0.0, 31.0, 5.0) * RPM_TO), modes=3, elements=15))
-    assert len(found.resonances) >= 4
-    for r in found.resonances:
+    result = campbell(blade, CampbellRequest(tuple(np.arange(0.0, 31.0, 5.0) * RPM_TO), modes=3, elements=15))
+    assert len(result.resonances) >= 4
+    for r in result.resonances:
         solved = modes(blade, r.omega, 15, 3).frequencies
         assert np.abs(solved / (r.per_rev * r.omega) - 1).min() < 2e-5
 
@@ -217,9 +217,9 @@ def test_a_blade_that_hangs_is_stiffened_by_gravity_as_a_chain_is() -> None:
     length, mass = 10.0, 5.0
     stiff = 1e-6 * mass * STANDARD_GRAVITY * length**3
     rope = uniform_blade("rope", length, 0.0, EA=1e8, GJ=1e3, EI_y=stiff, EI_z=4 * stiff, mass=mass, I_y=1e-3, I_z=1e-3)
-    found = modes(rope, 0.0, 60, 4, gravity=gravity(np.pi)).frequencies
+    frequencies = modes(rope, 0.0, 60, 4, gravity=gravity(np.pi)).frequencies
     exact = 0.5 * jn_zeros(0, 2) * np.sqrt(STANDARD_GRAVITY / length)
-    np.testing.assert_allclose(found, np.repeat(exact, 2), rtol=1.2e-2)
+    np.testing.assert_allclose(frequencies, np.repeat(exact, 2), rtol=1.2e-2)
 
 
 def test_gravity_turns_against_the_rotation_and_with_the_tilt() -> None:
@@ -322,13 +322,13 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
         shapes[1, :, 1 if omega < 1.2 else 0] = STATIONS
         return Modes(omega, np.array([5.0, 9.0]), shapes, 10, uncertainty=np.zeros(2))
 
-    found = campbell(BLADE, CampbellRequest((0.0, 1.0, 2.0), modes=2), jump)
-    phrase = verdict(replace(found, request=replace(found.request, operating=(0.5, 1.5))), RAD_S)
+    result = campbell(BLADE, CampbellRequest((0.0, 1.0, 2.0), modes=2), jump)
+    phrase = verdict(replace(result, request=replace(result.request, operating=(0.5, 1.5))), RAD_S)
     assert "Not judged, because not tracked over the whole range: " in phrase
-    (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Ambiguous tracking")
+    (sheet,) = (s for s in sheets(result, RAD_S) if s.title == "Ambiguous tracking")
     assert sheet.rows[0][0] == "edgewise 1"
     assert sheet.rows[0][3] == "none"
-    assert "?" in texts(draw(found, RAD_S, "jump"))
+    assert "?" in texts(draw(result, RAD_S, "jump"))
 
 
 def test_the_answer_in_one_line() -> None:
@@ -368,9 +368,9 @@ def test_a_mode_has_one_name_in_every_command() -> None:
     stiffness = np.repeat(section_stiffness(1e7, 1e3, 1e4, 2e4), 6, axis=0)
     blade = Blade("twisted", stations, stiffness, mass, stations * np.pi / 4)
     speeds = (0.0, 10.0)
-    found = campbell(blade, CampbellRequest(speeds, modes=8, elements=20))
+    result = campbell(blade, CampbellRequest(speeds, modes=8, elements=20))
     modes = tracked(blade, CampbellRequest(speeds, modes=8, elements=20))
-    assert [mode.label for mode in modes] == [found.labels[t] for t in range(found.tracks.count)]
+    assert [mode.label for mode in modes] == [result.labels[t] for t in range(result.tracks.count)]
     for k, rows in enumerate(sweep(blade, speeds, 20, 8)):
-        assert tuple(row.name.split()[0] for row in rows) == found.labels.families[k][: len(rows)]
+        assert tuple(row.name.split()[0] for row in rows) == result.labels.families[k][: len(rows)]
         assert any(row.name.startswith("mixed") for row in rows)

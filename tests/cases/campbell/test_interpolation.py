@@ -46,7 +46,7 @@ def test_steps_are_kept_and_few_stations_are_not_judged() -> None:
     s = np.array([0.0, 0.5 - 0.1 * STEP, 0.5, 0.7, 1.0])
     EI = np.array([4.0, 4.0, 2.0, 1.0, 1.0])
     stepped = Blade("step", s, section_stiffness(np.inf, np.inf, EI, EI), section_mass(np.ones(5)), np.zeros(5))
-    found = without_every_second(stepped).stiffness[:, 4, 4]
-    np.testing.assert_allclose(found, [4.0, 4.0, 2.0, 2.0 - 0.2 / 0.5, 1.0])
+    result = without_every_second(stepped).stiffness[:, 4, 4]
+    np.testing.assert_allclose(result, [4.0, 4.0, 2.0, 2.0 - 0.2 / 0.5, 1.0])
     beam = uniform_blade("beam", 2.0, 0.0, EA=1e6, GJ=1e3, EI_y=48.0, EI_z=48.0, mass=3.0)
     assert warnings(beam, 4) == []

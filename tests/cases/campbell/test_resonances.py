@@ -50,16 +50,16 @@ def test_three_speeds_give_the_crossings_of_a_dense_sweep() -> None:
     blade, top = subject("nrel-5mw")
     dense = np.linspace(0.0, top, 61)
     swept = np.array([mesh_modes(blade, omega, ELEMENTS, MODES).frequencies for omega in dense])
-    found = coarse(blade, top)
+    coarse_answer = coarse(blade, top)
     number = 0
     for n in PER_REV:
         above = swept > n * dense[:, None]
         expected = [_meets(blade, n, int(mode), dense[k : k + 2]) for k, mode in np.argwhere(above[1:] != above[:-1])]
-        ours = sorted(r.omega for r in found.resonances if r.per_rev == n)
+        ours = sorted(r.omega for r in coarse_answer.resonances if r.per_rev == n)
         np.testing.assert_allclose(ours, sorted(expected), rtol=1e-9)
         number += len(expected)
-    assert len(found.resonances) == number >= 5
-    assert not found.unlisted
+    assert len(coarse_answer.resonances) == number >= 5
+    assert not coarse_answer.unlisted
 
 
 def test_the_crossings_of_a_straight_blade_are_the_eigenvalues_of_one_problem() -> None:
@@ -69,7 +69,7 @@ def test_the_crossings_of_a_straight_blade_are_the_eigenvalues_of_one_problem() 
     stretch of the blade changes them slightly.
     """
     blade, top = subject("park-cantilever")
-    found = coarse(blade, top)
+    coarse_answer = coarse(blade, top)
 
     @cache
     def matrices(at: float) -> Linearization:
@@ -83,7 +83,7 @@ def test_the_crossings_of_a_straight_blade_are_the_eigenvalues_of_one_problem() 
         return 1.0 / np.sqrt(inverse[inverse > 1.0 / top**2])
 
     for n in PER_REV:
-        ours = [r.omega for r in found.resonances if r.per_rev == n]
+        ours = [r.omega for r in coarse_answer.resonances if r.per_rev == n]
         assert len(speeds(n, top)) == len(ours)
         for omega in ours:
             assert np.abs(speeds(n, omega) / omega - 1).min() < 1e-9
@@ -109,10 +109,10 @@ def bent(bottom: float) -> Campbell:
 
 @pytest.mark.parametrize("bottom", [-1e-3, -0.02, -0.1])
 def test_two_crossings_between_two_solved_speeds_are_found(bottom: float) -> None:
-    found = bent(bottom).resonances
+    resonances = bent(bottom).resonances
     expected = np.sqrt(5 + np.array([-1, 1]) * np.sqrt(-bottom / 0.2))
-    assert [r.per_rev for r in found] == [2, 2]
-    for r, omega in zip(found, expected, strict=True):
+    assert [r.per_rev for r in resonances] == [2, 2]
+    for r, omega in zip(resonances, expected, strict=True):
         assert abs(r.omega / omega - 1) <= r.uncertainty < 1e-3
         assert not r.touches
 
@@ -132,11 +132,11 @@ def test_a_near_miss_within_the_uncertainty_is_not_excluded() -> None:
 def test_a_crossing_has_the_uncertainty_of_its_frequency() -> None:
     """ω² = 4 + 1.5 Ω² meets 2 per revolution at Ω² = 1.6; dΩ/Ω = n²/(n² − φ) dω/ω = 1.6e-7."""
     request = CampbellRequest((0.0, 2.0), modes=1, per_rev=(2,))
-    found = campbell(BLADE, request, meeting(lambda x: 4 + 1.5 * x))
-    (r,) = found.resonances
+    diagram = campbell(BLADE, request, meeting(lambda x: 4 + 1.5 * x))
+    (r,) = diagram.resonances
     assert r.omega == pytest.approx(np.sqrt(1.6), rel=1e-12)
     assert r.uncertainty == pytest.approx(1.6e-7, rel=1e-2)
-    (sheet,) = (s for s in sheets(found, RAD_S) if s.title == "Crossings of n per revolution")
+    (sheet,) = (s for s in sheets(diagram, RAD_S) if s.title == "Crossings of n per revolution")
     assert sheet.rows[0][1:] == ("2P", "1.264911", "2.529822", "2e-07")
 
 
@@ -147,9 +147,9 @@ def test_a_mode_that_is_lost_where_it_crosses_is_a_warning() -> None:
         shapes[1, :, 1 if omega < 1.495 else 0] = STATIONS
         return Modes(omega, np.array([5.0, 8.97]), shapes, 10, uncertainty=np.zeros(2))
 
-    found = campbell(BLADE, CampbellRequest((0.0, 1.0, 1.8), modes=2, per_rev=(3, 6)), jump)
-    (lost,) = found.unlisted
+    diagram = campbell(BLADE, CampbellRequest((0.0, 1.0, 1.8), modes=2, per_rev=(3, 6)), jump)
+    (lost,) = diagram.unlisted
     assert (lost.per_rev, lost.number) == (6, 1)
     assert lost.omega[0] < 1.495 <= lost.omega[1]
-    assert [(r.per_rev, r.omega) for r in found.resonances] == [(6, pytest.approx(5 / 6)), (3, pytest.approx(5 / 3))]
-    assert any(note.startswith("6P: from 1.49") and "changes by +1 more" in note for note in notes(found, RAD_S))
+    assert [(r.per_rev, r.omega) for r in diagram.resonances] == [(6, pytest.approx(5 / 6)), (3, pytest.approx(5 / 3))]
+    assert any(note.startswith("6P: from 1.49") and "changes by +1 more" in note for note in notes(diagram, RAD_S))

@@ -130,9 +130,9 @@ def test_flap_and_edge_of_a_uniform_beam_cross() -> None:
     tracks = track(lambda omega: mesh_modes(beam, omega, 12, 6), speeds, weight, 4)
     np.testing.assert_array_equal(tracks.omega, speeds)
     shares = by_track(tracks, beam)
-    found = encounters(tracks, shares, weight)
-    assert {e.kind for e in found} == {"crossing"}
-    first = next(e for e in found if e.tracks == (0, 1))
+    result = encounters(tracks, shares, weight)
+    assert {e.kind for e in result} == {"crossing"}
+    first = next(e for e in result if e.tracks == (0, 1))
     assert first.gap < 1e-6
     pair = mesh_modes(beam, first.omega, 12, 2).frequencies
     assert pair[1] / pair[0] - 1 < 1e-3

@@ -234,9 +234,9 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
 def test_mistakes_are_caught(fault: str) -> None:
     code, by = FAULTS[fault]
     names = "|".join(f"^{re.escape(name)}$" for name in by)
-    found = failures(code, among=names)
-    assert set(found) == by
-    assert all(reason.strip() and "\n" not in reason for reason in found.values())
+    result = failures(code, among=names)
+    assert set(result) == by
+    assert all(reason.strip() and "\n" not in reason for reason in result.values())
 
 
 FINDINGS = {
@@ -275,16 +275,16 @@ def test_memory_of_another_call_is_caught() -> None:
     def solved(blade: Blade) -> None:
         before[0] += 1e-9
 
-    found = failures(Core(solved=solved, given=lambda b: replace(b, hub_radius=b.hub_radius + before[0])))
-    assert set(found) == {"repeatable"}
+    result = failures(Core(solved=solved, given=lambda b: replace(b, hub_radius=b.hub_radius + before[0])))
+    assert set(result) == {"repeatable"}
 
 
 def test_whatever_a_code_raises_is_a_failure_in_one_line() -> None:
     def break_down(blade: Blade) -> str | None:
         raise ZeroDivisionError("division\nby zero")
 
-    found = failures(Core(solved=break_down), among="rotating beam")
-    assert found == {"rotating beam": "ZeroDivisionError: division by zero"}
+    result = failures(Core(solved=break_down), among="rotating beam")
+    assert result == {"rotating beam": "ZeroDivisionError: division by zero"}
 
 
 def test_a_code_that_is_not_there_is_not_run() -> None:
@@ -315,7 +315,7 @@ def test_what_a_tip_mass_weighs_is_not_what_it_pulls() -> None:
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(pybmodes_beam, "write", with_tip_mass)
-        found = failures(Credulous(), among="^tip mass (at rest|rotating)")
-    assert set(found) == {"tip mass rotating"}
-    assert "2.478" in found["tip mass rotating"]
+        result = failures(Credulous(), among="^tip mass (at rest|rotating)")
+    assert set(result) == {"tip mass rotating"}
+    assert "2.478" in result["tip mass rotating"]
     assert set(mass) == {6.0}

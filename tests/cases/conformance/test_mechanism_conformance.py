@@ -46,13 +46,13 @@ class Core(MechanismAdapter):
 
     def mechanism_modes(self, mechanism: mb.Mechanism, guess: Mapping[str, float]) -> MechanismModes:
         try:
-            found = mb.solve(self.given(mechanism), guess)
+            solution = mb.solve(self.given(mechanism), guess)
         except mb.MechanismError as error:
             if self.answers_all:
                 return MechanismModes(("a",), np.zeros(1), np.array([1j]), np.ones((1, 1), complex))
             raise CodeError(str(error)) from error
         return self.returned(
-            MechanismModes(found.coordinates, found.linear.state.q, np.asarray(found.values), found.shapes)
+            MechanismModes(solution.coordinates, solution.linear.state.q, np.asarray(solution.values), solution.shapes)
         )
 
 
@@ -68,8 +68,8 @@ def failures(code: Core) -> set[str]:
 
 
 def test_core_conforms() -> None:
-    found = {str(c): judge(Core(), c) for c in FOR_MECHANISMS}
-    assert {n: o.reason for n, o in found.items() if o.verdict != "pass"} == {
+    result = {str(c): judge(Core(), c) for c in FOR_MECHANISMS}
+    assert {n: o.reason for n, o in result.items() if o.verdict != "pass"} == {
         "mechanism refusals": "the code accepts all these mechanisms"
     }
 

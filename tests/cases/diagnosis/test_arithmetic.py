@@ -48,8 +48,8 @@ def test_conjugate_pairs_and_halves_are_recognised() -> None:
 
 
 def test_a_unit_and_an_order_are_recognised_together() -> None:
-    found = name(2 * np.pi * np.array([row[[0, 0, 1, 1]] for row in EVERY]))
-    assert found == "constant ratio 2π: rad/s given as Hz, every mode twice (conjugate pairs)"
+    result = name(2 * np.pi * np.array([row[[0, 0, 1, 1]] for row in EVERY]))
+    assert result == "constant ratio 2π: rad/s given as Hz, every mode twice (conjugate pairs)"
 
 
 def test_a_hollow_shaft_in_hz_instead_of_rad_per_s() -> None:

@@ -30,11 +30,11 @@ def cells() -> list[Cell]:
 
 
 def test_a_failing_column_is_diagnosed_from_its_cells() -> None:
-    found = diagnosed(BLADE, cells())
-    assert found.known
-    assert found.sentence.startswith("as Southwell's own solver without hub radius (remains 0.000")
-    assert found.causes[0].startswith("without hub radius: explains 100 %")
-    assert any(line.startswith("flapwise 1: at rest ") for line in found.modes)
+    diagnosis = diagnosed(BLADE, cells())
+    assert diagnosis.known
+    assert diagnosis.sentence.startswith("as Southwell's own solver without hub radius (remains 0.000")
+    assert diagnosis.causes[0].startswith("without hub radius: explains 100 %")
+    assert any(line.startswith("flapwise 1: at rest ") for line in diagnosis.modes)
 
 
 def test_only_failures_and_added_files_are_due() -> None:

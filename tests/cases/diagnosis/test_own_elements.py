@@ -48,9 +48,9 @@ def given(of: Problem) -> np.ndarray:
 
 def test_a_mass_spread_over_elements_is_named_if_the_nodes_are_known() -> None:
     of = problem(*own_elements.hypotheses(NODES.tolist()))
-    found = explain(of, given(of))
-    assert found.largest > 2e-3
-    assert found.sentence.startswith(
+    diagnosis = explain(of, given(of))
+    assert diagnosis.largest > 2e-3
+    assert diagnosis.sentence.startswith(
         "as Southwell's own solver with the mass of each of its 5 elements spread evenly (remains 0.0"
     )
     assert explain(problem(), given(of)).cause is None

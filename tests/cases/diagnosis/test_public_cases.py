@@ -58,9 +58,9 @@ def test_mbwind_is_named_as_a_truncated_modal_basis() -> None:
         [4.289513, 6.814949, 12.417516, 25.307194], [5.124437, 6.965019, 13.438279, 25.701539],
         [7.562747, 8.078772, 17.963777, 27.695768], [9.467076, 13.710680, 28.873108, 34.045807],
     ])  # fmt: skip
-    found = diagnose(mbwind(), speeds, given)
-    assert found.cause is not None
-    assert first_names(found) == ["in the 4 lowest modes at rest"]
+    diagnosis = diagnose(mbwind(), speeds, given)
+    assert diagnosis.cause is not None
+    assert first_names(diagnosis) == ["in the 4 lowest modes at rest"]
 
 
 def test_bladed_differs_at_rest_and_the_cause_is_open() -> None:
@@ -68,12 +68,12 @@ def test_bladed_differs_at_rest_and_the_cause_is_open() -> None:
     speeds = np.array([1.0, 5.0, 10.0, 20.0]) * RPM
     given = [[4.2606, 6.8065, 12.323, 25.265], [4.3144, 6.8150, 12.384, 25.288],
              [4.4771, 6.8413, 12.574, 25.359], [5.0606, 6.9459, 13.314, 25.643]]  # fmt: skip
-    found = diagnose(mbwind(), speeds, given)
-    flap = found.modes[0]
+    diagnosis = diagnose(mbwind(), speeds, given)
+    flap = diagnosis.modes[0]
     assert (flap.rest, flap.rest_reference) == pytest.approx((4.2584, 4.2892), abs=2e-4)
     assert (flap.slope, flap.slope_reference) == pytest.approx((1.755, 1.812), abs=2e-3)
-    assert found.cause is None
-    assert "at rest (−0.77 to −0.13 %: stiffness or mass) and a slope" in found.sentence
+    assert diagnosis.cause is None
+    assert "at rest (−0.77 to −0.13 %: stiffness or mass) and a slope" in diagnosis.sentence
 
 
 def test_a_shear_modulus_of_half_e_times_one_plus_nu_is_named() -> None:
@@ -88,9 +88,9 @@ def test_a_shear_modulus_of_half_e_times_one_plus_nu_is_named() -> None:
     as_written[:, TORSION, TORSION] = 32480.0
     speeds = [0.0, 3000 * RPM, 6000 * RPM]
     answers = mesh_sweep(replace(blade, stiffness=as_written), speeds, 32, 6)
-    found = diagnose(blade, speeds, [modes.frequencies for modes in answers])
-    assert first_names(found) == ["with E/2·(1 + ν) for G (ν = 0.28)"]
-    assert found.cause is not None
+    diagnosis = diagnose(blade, speeds, [modes.frequencies for modes in answers])
+    assert first_names(diagnosis) == ["with E/2·(1 + ν) for G (ν = 0.28)"]
+    assert diagnosis.cause is not None
 
 
 def test_a_flap_frequency_that_falls_lacks_geometric_stiffness() -> None:
@@ -109,12 +109,12 @@ def test_a_flap_frequency_that_falls_lacks_geometric_stiffness() -> None:
         0.025098455,
         root=root,
     )
-    found = diagnose(blade, [0.0, 16.5, 33.0], 2 * np.pi * np.array([[10.636], [9.954], [7.631]]), ["flapwise 1"])
+    diagnosis = diagnose(blade, [0.0, 16.5, 33.0], 2 * np.pi * np.array([[10.636], [9.954], [7.631]]), ["flapwise 1"])
     assert (
         "frequencies fall with speed where the solver's rise: geometric stiffness is missing or reversed"
-        in found.sentence
+        in diagnosis.sentence
     )
-    assert first_names(found)[0] == "with geometric stiffness reversed"
+    assert first_names(diagnosis)[0] == "with geometric stiffness reversed"
 
 
 def test_the_slope_of_a_formula_for_low_speed_is_seen_and_open() -> None:
@@ -123,16 +123,16 @@ def test_the_slope_of_a_formula_for_low_speed_is_seen_and_open() -> None:
     rest = next(mesh_sweep(blade, [0.0], 40, 1)).frequencies[0]
     speeds = [0.0, 106.0, 400.0]
     given = [[np.sqrt(rest**2 + 1.193 * omega**2)] for omega in speeds]
-    found = diagnose(blade, speeds, given, ["flapwise 1"])
-    assert found.largest < 2e-3
-    assert "grows from rest with speed" in found.sentence
-    assert found.cause is None
+    diagnosis = diagnose(blade, speeds, given, ["flapwise 1"])
+    assert diagnosis.largest < 2e-3
+    assert "grows from rest with speed" in diagnosis.sentence
+    assert diagnosis.cause is None
 
 
 def test_three_assumed_shapes_and_gravity_stay_open() -> None:
     """openfast_toolbox's NREL 5-MW blade at rest: 17 nodes, three assumed shapes, gravity (+1.4 % flapwise 2)."""
     blade = library.load("nrel-5mw").variants[0].blade
     given = 2 * np.pi * np.array([[0.67167, 1.07914, 1.98086]])
-    found = diagnose(blade, [0.0], given, ["flapwise 1", "edgewise 1", "flapwise 2"])
-    assert found.cause is None
-    assert found.sentence == "no known cause of 1.4 %"
+    diagnosis = diagnose(blade, [0.0], given, ["flapwise 1", "edgewise 1", "flapwise 2"])
+    assert diagnosis.cause is None
+    assert diagnosis.sentence == "no known cause of 1.4 %"

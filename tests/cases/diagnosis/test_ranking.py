@@ -40,10 +40,10 @@ def test_a_mode_counts_twice_only_if_its_difference_moves_with_speed() -> None:
 def test_a_seeded_cause_is_named_and_what_has_no_effect_is_said() -> None:
     wrong = replace(BLADE, hub_radius=0.0)
     given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, PROBLEM.speeds, 40, 4)])
-    found = explain(PROBLEM, given)
-    assert found.sentence.startswith("as Southwell's own solver without hub radius (remains 0.0000")
-    assert found.without_effect == ("with precone reversed",)
-    assert "without softening" not in found.sentence
+    diagnosis = explain(PROBLEM, given)
+    assert diagnosis.sentence.startswith("as Southwell's own solver without hub radius (remains 0.0000")
+    assert diagnosis.without_effect == ("with precone reversed",)
+    assert "without softening" not in diagnosis.sentence
 
 
 def test_a_pair_is_named_if_one_cause_does_not_suffice() -> None:
@@ -66,9 +66,12 @@ def test_causes_that_the_numbers_do_not_tell_apart_are_stated_as_ties() -> None:
     problem = Problem(BLADE, (0.0, 20.0), (1, 2, 3, 4), hypotheses={one.name: one for one in (*FEW, near)})
     wrong = replace(BLADE, hub_radius=0.0005)
     given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, problem.speeds, 40, 4)])
-    found = explain(problem, given, 1e-4)
-    assert {one.changes[0][0] for one in (found.causes[0], *found.ties)} == {"without hub radius", "with a hub of 1 mm"}
-    assert "; or with" in found.sentence
+    diagnosis = explain(problem, given, 1e-4)
+    assert {one.changes[0][0] for one in (diagnosis.causes[0], *diagnosis.ties)} == {
+        "without hub radius",
+        "with a hub of 1 mm",
+    }
+    assert "; or with" in diagnosis.sentence
 
 
 def test_arrays_of_other_shapes_are_refused() -> None:
@@ -83,8 +86,8 @@ def test_modes_may_be_named_by_family() -> None:
     (modes,) = mesh_sweep(wrong, [20.0], 40, 4)
     problem = replace(PROBLEM, speeds=(20.0,), labels=("edgewise 1", "flapwise 1"))
     order = [0, 1] if spectra.names(problem)[0][0] == "edgewise 1" else [1, 0]
-    found = explain(problem, modes.frequencies[None, order])
-    assert found.causes[0].changes == (("without hub radius", 1.0),)
+    diagnosis = explain(problem, modes.frequencies[None, order])
+    assert diagnosis.causes[0].changes == (("without hub radius", 1.0),)
 
 
 def test_modes_may_be_paired_by_shape_where_frequencies_cross() -> None:

@@ -115,9 +115,9 @@ def test_forty_seeded_causes_are_named_first() -> None:
     for name, seeds in SEEDS.items():
         for seed in seeds:
             right = numbers(problem(name), seed)
-            found = explain(problem(name), right * (1.0 + NOISE * rng.standard_normal(right.shape)))
-            if not is_first(found, seed.name):
-                missed.append((name, seed.name, found.sentence))
+            diagnosis = explain(problem(name), right * (1.0 + NOISE * rng.standard_normal(right.shape)))
+            if not is_first(diagnosis, seed.name):
+                missed.append((name, seed.name, diagnosis.sentence))
     total = sum(map(len, SEEDS.values()))
     assert total == 40
     assert len(missed) <= (1 - LEAST) * total, missed
@@ -138,9 +138,9 @@ def test_numbers_altered_at_random_have_no_known_cause() -> None:
                 rng.standard_normal(modes) + fast * rng.standard_normal(modes),
                 rng.uniform(-1.0, 1.0, reference.shape),
             ):
-                found = explain(problem(name), reference * np.exp(size * altered))
+                diagnosis = explain(problem(name), reference * np.exp(size * altered))
                 count += 1
-                if found.cause or found.arithmetic:
-                    named.append((name, size, found.sentence))
+                if diagnosis.cause or diagnosis.arithmetic:
+                    named.append((name, size, diagnosis.sentence))
     assert count == 60
     assert len(named) <= (1 - LEAST) * count, named

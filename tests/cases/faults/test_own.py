@@ -42,17 +42,17 @@ def cell(verdict: Verdict, reference: float = 5.0, difference: float = 0.0) -> C
 
 def test_only_a_fail_detects() -> None:
     right = [cell("pass")]
-    found = own.judged(CONTROL, right, [cell("fail", 5.2, -0.04)])
-    assert found.detected_by == ("beam, code, flapwise 1, 10 rad/s: fail",)
-    assert found.change == -0.04
+    judgement = own.judged(CONTROL, right, [cell("fail", 5.2, -0.04)])
+    assert judgement.detected_by == ("beam, code, flapwise 1, 10 rad/s: fail",)
+    assert judgement.change == -0.04
     assert own.judged(CONTROL, right, [cell("inconclusive", 5.2, -0.04)]).missed
     assert own.judged(CONTROL, [cell("fail")], [cell("fail", 5.2)]).missed
 
 
 def test_a_fault_below_the_target_is_without_effect_here() -> None:
-    found = own.judged(CONTROL, [cell("pass")], [cell("pass", 5.0001)])
-    assert found.without_effect == "changes no compared frequency by more than 0.0020 %"
-    assert not found.missed
+    judgement = own.judged(CONTROL, [cell("pass")], [cell("pass", 5.0001)])
+    assert judgement.without_effect == "changes no compared frequency by more than 0.0020 %"
+    assert not judgement.missed
 
 
 def test_witnesses_share_nothing_and_pass_every_mode_at_the_highest_speed() -> None:
@@ -72,9 +72,9 @@ def test_a_blade_of_the_package_is_not_the_users() -> None:
 
 
 def test_without_an_independent_code_nothing_is_claimed() -> None:
-    (found,) = own.run(users(), (), ("no hub radius",))
-    assert found.needs == own.NO_WITNESS
-    assert not found.missed
+    (run,) = own.run(users(), (), ("no hub radius",))
+    assert run.needs == own.NO_WITNESS
+    assert not run.missed
 
 
 @pytest.mark.slow
@@ -99,12 +99,12 @@ def test_the_second_reading_detects_mistakes_of_the_reader(tmp_path: Path) -> No
     decks.openfast(tmp_path)
     (subject,) = subjects(Request((str(tmp_path / "elastodyn_main.dat"),), rpm="10"), lambda _: None)
     assert isinstance(subject, BladeSubject)
-    found = outcomes(own_reading.run(subject))
-    assert "missed" not in found.values()
-    assert "flapwise stiffness" in found["columns exchanged"]
-    assert "mass per length" in found["mass multiplier"]
-    assert "twist" in found["station"]
-    assert found["prebend's sign"] == "changes no property of this blade"
+    result = outcomes(own_reading.run(subject))
+    assert "missed" not in result.values()
+    assert "flapwise stiffness" in result["columns exchanged"]
+    assert "mass per length" in result["mass multiplier"]
+    assert "twist" in result["station"]
+    assert result["prebend's sign"] == "changes no property of this blade"
 
 
 @pytest.mark.slow

@@ -17,18 +17,18 @@ def subject(name: str, omega: float) -> BladeSubject:
 
 
 def test_all_are_detected_by_modes_outside_their_uncertainty() -> None:
-    found = {c.control: c for c in own.run(subject("park-cantilever", 10.0))}
-    assert list(found) == [fault.name for fault in own.FAULTS]
-    assert not [c for c in found.values() if c.missed or c.without_effect or c.needs]
-    off = found["extrapolation: limit off"]
+    result = {c.control: c for c in own.run(subject("park-cantilever", 10.0))}
+    assert list(result) == [fault.name for fault in own.FAULTS]
+    assert not [c for c in result.values() if c.missed or c.without_effect or c.needs]
+    off = result["extrapolation: limit off"]
     assert off.change == pytest.approx(0.002, abs=1e-5)
     assert off.detected_by[0] == "park-cantilever, mode 1 from 8, 16 and 32 elements, 10 rad/s: fail"
 
 
 def test_a_wrong_limit_within_its_uncertainty_is_without_effect() -> None:
-    found = own.run(subject("tip-mass-in-plane/coned", 8.0))[0]
-    assert found.without_effect.startswith("moves frequencies by at most 0.00")
-    assert found.without_effect.endswith(", within their uncertainty")
+    result = own.run(subject("tip-mass-in-plane/coned", 8.0))[0]
+    assert result.without_effect.startswith("moves frequencies by at most 0.00")
+    assert result.without_effect.endswith(", within their uncertainty")
 
 
 def test_a_blade_that_coarse_meshes_do_not_solve_says_so() -> None:

@@ -47,11 +47,11 @@ def test_every_code_declares_all_of_its_origin(name: str) -> None:
 def test_known_overcounts_are_one_group() -> None:
     declared = {name: registry.code(name).independence for name in BLADE_CODES}
     made = [Origin("beam", name, **asdict(d)) for name, d in declared.items() if d]
-    found = count(run(*made))
-    assert ("exudyn-ancf", "exudyn-beam", "exudyn-tree") in found
-    assert ("assumed-modes", "exact-beam", "southwell-equation", "yoo-shin") in found
-    assert ("sharpy",) in found  # its sections are those of the adapters' reference line, not core's
-    together = {name for group in found for name in group}
+    result = count(run(*made))
+    assert ("exudyn-ancf", "exudyn-beam", "exudyn-tree") in result
+    assert ("assumed-modes", "exact-beam", "southwell-equation", "yoo-shin") in result
+    assert ("sharpy",) in result  # its sections are those of the adapters' reference line, not core's
+    together = {name for group in result for name in group}
     assert together.isdisjoint({"pinocchio", "drake", "mujoco"})
 
 

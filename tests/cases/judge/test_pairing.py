@@ -70,16 +70,16 @@ def test_weights_turn_an_offset_mass_with_twist_and_pitch() -> None:
 def test_order_scale_and_phase_do_not_matter(order: list[int], phases: tuple[float, ...]) -> None:
     shapes = [3.0 * np.exp(1j * phases[k]) * REFERENCE.shapes[k] for k in order]
     other = modes([1.0, 2.0, 3.0, 4.0], shapes)
-    found = pair(REFERENCE, other, range(4))
-    assert [order[p.mode] for p in found if p.mode is not None] == [0, 1, 2, 3]
-    assert all(p.mac == pytest.approx(1.0) and not p.note for p in found)
+    pairs = pair(REFERENCE, other, range(4))
+    assert [order[p.mode] for p in pairs if p.mode is not None] == [0, 1, 2, 3]
+    assert all(p.mac == pytest.approx(1.0) and not p.note for p in pairs)
 
 
 def test_the_index_of_a_mode_does_not_matter_however_close_the_choice_is() -> None:
     """Two modes exchanged and mixed by 43°: MAC 0.535 with the partner, 0.465 with the mode of the same index."""
     c, s, (a, b, *_) = np.cos(np.radians(43.0)), np.sin(np.radians(43.0)), REFERENCE.shapes
-    found = pair(modes([10.0, 15.0], [a, b]), modes([10.0, 15.0], [c * b - s * a, c * a + s * b]), range(2), least=0.5)
-    assert [p.mode for p in found] == [1, 0]
+    pairs = pair(modes([10.0, 15.0], [a, b]), modes([10.0, 15.0], [c * b - s * a, c * a + s * b]), range(2), least=0.5)
+    assert [p.mode for p in pairs] == [1, 0]
 
 
 def test_the_lag_of_a_gyroscopic_mode_counts() -> None:
@@ -122,9 +122,9 @@ def test_a_subspace_that_is_not_the_same_has_no_partner() -> None:
     reference = modes([10.0, 10.0], [shape(CHORD, 1), shape(FLAP, 1)])
     mixed = (shape(CHORD, 1) + shape(FLAP, 1)) / np.sqrt(2)
     other = modes([10.0, 10.0], [mixed, shape(TORSION, 1)])
-    for found in pair(reference, other, range(2)):
-        assert found.mode is None
-        assert "no partner: its most similar mode, at 10 rad/s, has MAC" in found.note
+    for result in pair(reference, other, range(2)):
+        assert result.mode is None
+        assert "no partner: its most similar mode, at 10 rad/s, has MAC" in result.note
 
 
 def test_shapes_that_are_one_and_the_same_twice_are_no_pair() -> None:
@@ -135,22 +135,22 @@ def test_shapes_that_are_one_and_the_same_twice_are_no_pair() -> None:
 
 def test_distinct_frequencies_are_not_excused_as_a_subspace() -> None:
     turned = [(shape(CHORD, 1) + shape(FLAP, 1)) / np.sqrt(2), (shape(CHORD, 1) - shape(FLAP, 1)) / np.sqrt(2)]
-    found = pair(REFERENCE, modes([10.0, 15.0], turned), [0])
-    assert found[0].mode is None
+    pairs = pair(REFERENCE, modes([10.0, 15.0], turned), [0])
+    assert pairs[0].mode is None
 
 
 def test_a_missing_mode_has_no_partner_and_does_not_take_another_ones() -> None:
     other = modes([10.0, 70.0, 71.0], [REFERENCE.shapes[k] for k in (0, 2, 3)])
-    found = pair(REFERENCE, other, range(4))
-    assert [p.mode for p in found] == [0, None, 1, 2]
+    pairs = pair(REFERENCE, other, range(4))
+    assert [p.mode for p in pairs] == [0, None, 1, 2]
 
 
 def test_a_rival_is_mentioned() -> None:
     rival = 0.75 * REFERENCE.shapes[0] + 0.6 * shape(AXIAL, 1)
-    found = pair(REFERENCE, modes([10.0, 12.0], [REFERENCE.shapes[0], rival]), [0])
-    assert found[0].mode == 0
-    assert found[0].note.startswith("ambiguous: MAC 0.61 with 12 rad/s")
-    assert found[0].ambiguous
+    pairs = pair(REFERENCE, modes([10.0, 12.0], [REFERENCE.shapes[0], rival]), [0])
+    assert pairs[0].mode == 0
+    assert pairs[0].note.startswith("ambiguous: MAC 0.61 with 12 rad/s")
+    assert pairs[0].ambiguous
 
 
 def test_a_rival_of_nearly_the_same_frequency_is_not_ambiguous() -> None:

@@ -25,9 +25,9 @@ BLADE, OMEGA = CASE.variants[0].blade, 10.0
 
 @cache
 def reference() -> Reference:
-    (found,) = references(BLADE, [OMEGA], CASE.text.compare, [ALL_EFFECTS])[ALL_EFFECTS]
-    assert isinstance(found, Reference)
-    return found
+    (result,) = references(BLADE, [OMEGA], CASE.text.compare, [ALL_EFFECTS])[ALL_EFFECTS]
+    assert isinstance(result, Reference)
+    return result
 
 
 def cells(alter: Callable[[Modes], Modes]) -> list[Cell]:
@@ -60,6 +60,6 @@ def test_a_right_answer_passes() -> None:
     [(spurious, "do not match any mode of"), (damped, "damping ratio 0.03: the blade has no damping")],
 )
 def test_what_a_blade_does_not_have_is_inconclusive(alter: Callable[[Modes], Modes], reason: str) -> None:
-    found = cells(alter)
-    assert {cell.verdict for cell in found} == {"inconclusive"}
-    assert all(reason in cell.reason for cell in found)
+    result = cells(alter)
+    assert {cell.verdict for cell in result} == {"inconclusive"}
+    assert all(reason in cell.reason for cell in result)

@@ -40,25 +40,25 @@ CLOSED = cell("exact", version="southwell 0.1.0")
 
 
 def test_codes_on_cores_model_are_no_independent_witnesses() -> None:
-    found = witnesses(run(*OURS), "beam")
-    assert [(w.name, w.kind, w.standing, w.fine) for w in found] == [
+    result = witnesses(run(*OURS), "beam")
+    assert [(w.name, w.kind, w.standing, w.fine) for w in result] == [
         (name, "Southwell's model", "agrees", None) for name in ("twin", "chain")
     ]
-    assert groups(found) == []
+    assert groups(result) == []
 
 
 def test_two_series_of_one_source_are_one_group() -> None:
-    found = witnesses(run(*TABLES), "beam")
-    assert [(w.kind, w.answers, w.fine) for w in found] == [("printed source", 1, None)] * 2
-    assert len(groups(found)) == 1
+    result = witnesses(run(*TABLES), "beam")
+    assert [(w.kind, w.answers, w.fine) for w in result] == [("printed source", 1, None)] * 2
+    assert len(groups(result)) == 1
 
 
 def test_kinds_and_count() -> None:
-    found = witnesses(run(cell("alpha"), CLOSED, *TABLES, *OURS, cell("southwell", "", role="discretisation")), "beam")
-    assert [w.kind for w in found] == [
+    result = witnesses(run(cell("alpha"), CLOSED, *TABLES, *OURS, cell("southwell", "", role="discretisation")), "beam")
+    assert [w.kind for w in result] == [
         "code", "closed form", "printed source", "printed source", "Southwell's model", "Southwell's model",
     ]  # fmt: skip
-    assert len(groups(found)) == 3
+    assert len(groups(result)) == 3
 
 
 @pytest.mark.parametrize(
@@ -83,9 +83,9 @@ def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: s
 def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str) -> None:
     """A mode without a partner, a crash, a time limit."""
     silent = samples.empty(verdict, "no partner", code="alpha", shares="nothing")
-    found = witnesses(run(cell("alpha"), silent), "beam")
-    assert [(w.standing, w.fine, w.answers) for w in found] == [(standing, standing, 1)]
-    assert groups(found) == []
+    result = witnesses(run(cell("alpha"), silent), "beam")
+    assert [(w.standing, w.fine, w.answers) for w in result] == [(standing, standing, 1)]
+    assert groups(result) == []
 
 
 def test_a_disagreement_outweighs_an_open_answer() -> None:

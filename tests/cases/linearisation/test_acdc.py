@@ -35,10 +35,10 @@ def ordered(states: tuple[State, ...], kept: list[int]) -> tuple[list[int], int]
     fixed = [k for k in kept if not states[k].rotating]
     triplets: list[int] = []
     for text in list(plain):
-        found = _BLADE.search(text)
-        if text not in plain or not found:
+        match = _BLADE.search(text)
+        if text not in plain or not match:
             continue
-        names = [text.replace(found[0], f"{found[1]}{blade}", 1) for blade in (1, 2, 3)]
+        names = [text.replace(match[0], f"{match[1]}{blade}", 1) for blade in (1, 2, 3)]
         members = [plain.pop(name) for name in names if name in plain]
         if len(members) == 3:
             triplets += members

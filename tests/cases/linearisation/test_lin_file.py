@@ -26,12 +26,12 @@ def lin_file(text: str = TEXT, name: str = "case.1.lin") -> LinFile:
 
 
 def test_what_is_written_is_read() -> None:
-    found = lin_file()
-    assert (found.version, found.azimuth, found.rotor_speed, found.digits) == ("v3.5.3", 0.3, 1.0, 4)
-    assert "BeamDyn" in found.modules
-    assert np.abs(found.A - LIN.A).max() <= found.half.max()
-    assert (np.abs(found.A - LIN.A) <= found.half + 1e-12 * np.abs(LIN.A)).all()
-    assert len(found.derivatives) == len(found.states) == 28
+    lin = lin_file()
+    assert (lin.version, lin.azimuth, lin.rotor_speed, lin.digits) == ("v3.5.3", 0.3, 1.0, 4)
+    assert "BeamDyn" in lin.modules
+    assert np.abs(lin.A - LIN.A).max() <= lin.half.max()
+    assert (np.abs(lin.A - LIN.A) <= lin.half + 1e-12 * np.abs(LIN.A)).all()
+    assert len(lin.derivatives) == len(lin.states) == 28
 
 
 @pytest.mark.parametrize(
@@ -83,10 +83,10 @@ def test_a_state_is_understood_from_its_description(text: str, expected: tuple[o
 
 
 def test_displacement_and_rate_have_one_kind() -> None:
-    found = azimuth_set("case", [lin_file()])
-    assert len(found.pairs) == 14
-    assert all(found.states[q].kind == found.states[v].kind for q, v in found.pairs)
-    assert sum(not group.rate for group in found.groups) == 3
+    azimuths = azimuth_set("case", [lin_file()])
+    assert len(azimuths.pairs) == 14
+    assert all(azimuths.states[q].kind == azimuths.states[v].kind for q, v in azimuths.pairs)
+    assert sum(not group.rate for group in azimuths.groups) == 3
 
 
 def test_the_layout_of_2017_is_read() -> None:

@@ -25,17 +25,17 @@ def judged(pattern: str) -> Judgement:
 
 def test_a_blade_at_rest_needs_no_transformation() -> None:
     """Eigenvalues of the file's own matrix."""
-    found = judged("nrel5mw/blade-only/*.lin")
+    judgement = judged("nrel5mw/blade-only/*.lin")
     values = np.linalg.eigvals(read(Path(FOLDER or "") / "nrel5mw/blade-only/Main.1.lin").A)
     expected = np.sort(np.abs(values[values.imag > 0])) / (2 * np.pi)
-    assert found.verdict == "Yes"
-    assert [mode.frequency for mode in found.sets[0].modes] == pytest.approx(expected.tolist(), rel=1e-9)
+    assert judgement.verdict == "Yes"
+    assert [mode.frequency for mode in judgement.sets[0].modes] == pytest.approx(expected.tolist(), rel=1e-9)
 
 
 def test_three_azimuths_in_operation_are_open() -> None:
-    found = judged("nrel5mw/rotating/*.lin")
-    assert found.verdict == "Open"
-    assert [mode.name for mode in found.sets[0].modes][:3] == [
+    judgement = judged("nrel5mw/rotating/*.lin")
+    assert judgement.verdict == "Open"
+    assert [mode.name for mode in judgement.sets[0].modes][:3] == [
         "flapwise 1 backward",
         "flapwise 1 collective",
         "flapwise 1 forward",
@@ -63,18 +63,18 @@ def test_frequencies_are_those_of_openfast_toolbox() -> None:
 
 def test_the_frame_of_beamdyn_is_found() -> None:
     """OpenFAST issue 3394: the correction raises the tower's side-side mode by 1.9 %, from 0.3835 to 0.3907 Hz."""
-    found = judged("nrel5mw/5MW_Land_BD_Linear.1.lin")
-    assert found.verdict == "No"
-    assert [finding.name for finding in found.findings][:2] == ["frame flag", "truncated digits"]
-    assert "0.3835 Hz as flagged, 0.3907 Hz corrected" in found.findings[0].what
-    assert found.findings[0].value == pytest.approx(0.0, abs=1e-3)
+    judgement = judged("nrel5mw/5MW_Land_BD_Linear.1.lin")
+    assert judgement.verdict == "No"
+    assert [finding.name for finding in judgement.findings][:2] == ["frame flag", "truncated digits"]
+    assert "0.3835 Hz as flagged, 0.3907 Hz corrected" in judgement.findings[0].what
+    assert judgement.findings[0].value == pytest.approx(0.0, abs=1e-3)
 
 
 def test_a_floating_turbine_has_its_platform_modes() -> None:
-    found = judged("iea15-semi/*.lin")
-    names = [mode.name for mode in found.sets[0].modes if mode.structural > 0.5]
+    judgement = judged("iea15-semi/*.lin")
+    names = [mode.name for mode in judgement.sets[0].modes if mode.structural > 0.5]
     assert names == ["platform surge", "platform pitch", "platform heave", "tower fore-aft 1"]
-    assert found.verdict == "Open"
+    assert judgement.verdict == "Open"
 
 
 @pytest.mark.parametrize("words", [words for words, _ in sessions(PAGE.read_text(encoding="utf-8"))])

@@ -53,9 +53,9 @@ def distance(value: complex, exponents: Complex, omega: float) -> float:
 def test_modes_equal_those_of_a_direct_integration() -> None:
     machine = Machine(gravity=0.0)
     exponents = floquet_exponents(machine)
-    found = judged(healthy(machine, 5, decimals=9))
-    assert len(found.modes) == 13
-    for mode in found.modes:
+    judgement = judged(healthy(machine, 5, decimals=9))
+    assert len(judgement.modes) == 13
+    for mode in judgement.modes:
         assert distance(mode.eigenvalue, exponents, machine.omega) < max(1e-6, mode.relative_uncertainty)
 
 
@@ -63,13 +63,13 @@ def test_gravity_is_treated_by_floquet_theory() -> None:
     machine = Machine(gravity=60.0)
     exponents = floquet_exponents(machine)
     each = as_set(healthy(machine, 12, decimals=9))
-    found = judge_set(each)
-    assert found.method == FLOQUET
+    result = judge_set(each)
+    assert result.method == FLOQUET
     mean = {mode.name: distance(mode.eigenvalue, exponents, machine.omega) for mode in spectrum(each, each.A).modes}
-    periodic = {mode.name: distance(mode.eigenvalue, exponents, machine.omega) for mode in found.modes}
+    periodic = {mode.name: distance(mode.eigenvalue, exponents, machine.omega) for mode in result.modes}
     assert max(mean.values()) > 5e-4
     assert max(periodic.values()) < max(mean.values()) / 5
-    assert all(periodic[mode.name] < max(1e-6, mode.relative_uncertainty) for mode in found.modes)
+    assert all(periodic[mode.name] < max(1e-6, mode.relative_uncertainty) for mode in result.modes)
 
 
 def test_names() -> None:
@@ -98,8 +98,8 @@ def test_the_uncertainty_covers_the_error_of_printed_digits(decimals: int) -> No
 
 
 def test_units_of_the_tower_do_not_change_the_modes() -> None:
-    found, millimetres = judged(healthy(MACHINE)), judged(tower_in_millimetres())
-    for mode, other in zip(found.modes, millimetres.modes, strict=True):
+    judgement, millimetres = judged(healthy(MACHINE)), judged(tower_in_millimetres())
+    for mode, other in zip(judgement.modes, millimetres.modes, strict=True):
         assert mode.name == other.name
         assert other.frequency == pytest.approx(mode.frequency, rel=1e-3)
         assert other.confidence == pytest.approx(mode.confidence, abs=0.01)

@@ -25,10 +25,10 @@ CMB = "# Mode number: 1 2\n 4.0 0.33 0.66 1.0 40.0\n 8.0 0.33 0.67 -0.5 41.0\n"
 def test_a_multiple_of_the_rotor_speed_is_no_mode(tmp_path: Path) -> None:
     path = tmp_path / "modes.csv"
     path.write_text(CSV)
-    found = judge([path])
-    lines = [finding for finding in found.findings if finding.name == "order line"]
+    judgement = judge([path])
+    lines = [finding for finding in judgement.findings if finding.name == "order line"]
     assert [(line.value, line.what.split(" is ")[0]) for line in lines] == [(3.0, "spurious")]
-    assert found.verdict == "No"
+    assert judgement.verdict == "No"
     path.write_text("\n".join(line for line in CSV.splitlines() if "spurious" not in line))
     assert judge([path]).verdict == "Open"
 

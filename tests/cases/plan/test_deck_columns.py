@@ -29,8 +29,8 @@ def subject(path: Path, mount: Mount, rpm: str = "12") -> Subject:
 
 def deck_columns(made: Subject, code: str = "pybmodes") -> list[Column]:
     assert made.blade is not None
-    found = made.columns(describe([code], [made.blade]), Limits(), ())
-    return [column for column in found if column.code == "pybmodes-deck"]
+    result = made.columns(describe([code], [made.blade]), Limits(), ())
+    return [column for column in result if column.code == "pybmodes-deck"]
 
 
 def cells(made: Subject) -> list[Cell]:
@@ -40,9 +40,9 @@ def cells(made: Subject) -> list[Cell]:
 
 
 def test_a_right_reader_is_confirmed_from_end_to_end() -> None:
-    found = cells(subject(SAMPLE, MOUNT))
-    assert {(c.verdict, c.shares) for c in found} == {("pass", "nothing")}
-    assert max(abs(c.difference or 1.0) for c in found) < 5e-5
+    result = cells(subject(SAMPLE, MOUNT))
+    assert {(c.verdict, c.shares) for c in result} == {("pass", "nothing")}
+    assert max(abs(c.difference or 1.0) for c in result) < 5e-5
 
 
 def test_exchanged_stiffnesses_fail_the_code_that_reads_the_deck_itself(monkeypatch: pytest.MonkeyPatch) -> None:

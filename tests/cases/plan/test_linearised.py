@@ -42,11 +42,11 @@ def fst(tmp_path: Path) -> Path:
 
 def test_modes_are_cells_with_the_parts_of_their_differences(fst: Path, tmp_path: Path) -> None:
     """The speed is that of the files. What is left of each difference is rounding and damping."""
-    found = cells(fst, write(tmp_path, files(deck.read(fst))))
-    named = {f"{cell.family} {cell.ordinal}": cell for cell in found}
+    result = cells(fst, write(tmp_path, files(deck.read(fst))))
+    named = {f"{cell.family} {cell.ordinal}": cell for cell in result}
     assert {"tower fore-aft 1", "flap collective 1", "edge forward whirl 1"} <= set(named)
-    assert {cell.omega for cell in found} == {2.5}
-    compared = [cell for cell in found if cell.difference is not None]
+    assert {cell.omega for cell in result} == {2.5}
+    compared = [cell for cell in result if cell.difference is not None]
     assert len(compared) >= 6
     assert {cell.verdict for cell in compared} <= {"pass", "known difference"}
     assert "mode shapes +" in named["tower fore-aft 1"].reason
@@ -55,9 +55,9 @@ def test_modes_are_cells_with_the_parts_of_their_differences(fst: Path, tmp_path
 def test_files_with_a_defect_agree_with_nothing(fst: Path, tmp_path: Path) -> None:
     lins = files(deck.read(fst))
     lins[0] = replace(lins[0], omega=1.02 * lins[0].omega)
-    found = cells(fst, write(tmp_path, lins))
-    assert not {cell.verdict for cell in found} & {"pass", "known difference"}
-    assert any("unsteady operating point" in cell.reason for cell in found)
+    result = cells(fst, write(tmp_path, lins))
+    assert not {cell.verdict for cell in result} & {"pass", "known difference"}
+    assert any("unsteady operating point" in cell.reason for cell in result)
 
 
 def test_blades_pitched_otherwise_are_not_applicable(tmp_path: Path) -> None:

@@ -79,11 +79,11 @@ def test_a_name_needs_no_other_mode_at_that_speed(compared: Run) -> None:
 @cache
 def reference() -> Reference:
     (variant,) = park((10.0,)).variants
-    (found,) = references(variant.blade, [10.0], library.load("park-cantilever").text.compare, {ALL_EFFECTS})[
+    (result,) = references(variant.blade, [10.0], library.load("park-cantilever").text.compare, {ALL_EFFECTS})[
         ALL_EFFECTS
     ]
-    assert isinstance(found, Reference)
-    return found
+    assert isinstance(result, Reference)
+    return result
 
 
 @given(st.floats(0.5, 2.0), st.floats(1e-6, 1.0), st.floats(0.0, 1.0), st.floats(0.0, 1.0))

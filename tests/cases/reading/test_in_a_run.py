@@ -43,8 +43,8 @@ def checked(deck: Path, codes: Sequence[str] = (), **options: Any) -> Run:
     """A run of one passing cell with the second reading of a deck and the models of it."""
     (subject,) = subjects(Request((str(deck),), rpm="10", **options), lambda _: None)
     assert subject.blade is not None
-    found = subject.property_checks(describe(list(codes), [subject.blade]), Limits())
-    rows = [*found.rows, *(row for task in found.tasks if isinstance(task, tasks.Weighing) for row in task())]
+    result = subject.property_checks(describe(list(codes), [subject.blade]), Limits())
+    rows = [*result.rows, *(row for task in result.tasks if isinstance(task, tasks.Weighing) for row in task())]
     return Run((PASS,), property_checks=tuple(rows))
 
 
@@ -66,25 +66,25 @@ def exchange(patch: pytest.MonkeyPatch) -> None:
 
 
 def test_a_right_reader_is_confirmed(deck: Path, tmp_path: Path) -> None:
-    found = checked(deck, ["exudyn-tree"])
-    assert {c.quantity for c in found.property_checks} == {"reading", "fingerprint"}
-    assert {c.verdict for c in found.property_checks} == {"pass"}
-    assert summary.status(found) == PASSED
-    (line,) = properties.lines(found)
+    checks = checked(deck, ["exudyn-tree"])
+    assert {c.quantity for c in checks.property_checks} == {"reading", "fingerprint"}
+    assert {c.verdict for c in checks.property_checks} == {"pass"}
+    assert summary.status(checks) == PASSED
+    (line,) = properties.lines(checks)
     assert line.startswith("Second reading: weio 2.0.0 reads the same 18 properties")
-    case = found.property_checks[0].case
-    assert len(properties.readings(found, case)) == 18
-    assert [row["model of"] for row in properties.models(found, case)] == ["Southwell's own solver", "exudyn-tree"]
-    results_file.write(tmp_path / "results.jsonl", found)
-    assert results_file.read(tmp_path / "results.jsonl").property_checks == found.property_checks
+    case = checks.property_checks[0].case
+    assert len(properties.readings(checks, case)) == 18
+    assert [row["model of"] for row in properties.models(checks, case)] == ["Southwell's own solver", "exudyn-tree"]
+    results_file.write(tmp_path / "results.jsonl", checks)
+    assert results_file.read(tmp_path / "results.jsonl").property_checks == checks.property_checks
 
 
 def test_exchanged_stiffnesses_end_a_run_with_status_1_by_name(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     exchange(monkeypatch)
-    found = checked(deck)
-    assert summary.status(found) == FAILED
-    assert evidence.verdict(found) == "No: 2 properties of the blade differ in a second reading of its file."
-    assert [line.partition(" at station")[0] for line in properties.lines(found)[:2]] == [
+    checks = checked(deck)
+    assert summary.status(checks) == FAILED
+    assert evidence.verdict(checks) == "No: 2 properties of the blade differ in a second reading of its file."
+    assert [line.partition(" at station")[0] for line in properties.lines(checks)[:2]] == [
         "Second reading: flapwise stiffness",
         "Second reading: edgewise stiffness",
     ]
@@ -95,19 +95,19 @@ def test_every_cell_passes_with_exchanged_stiffnesses(deck: Path, monkeypatch: p
     """The whole command: no code sees the exchange, because all of them take the blade from the reader."""
     exchange(monkeypatch)
     execution = Execution(threads=True, fresh=True)
-    found = verify(Request((str(deck),), ("exudyn-tree",), rpm="10", faults="none", execution=execution))
-    assert {c.verdict for c in found.cells} == {"pass"}
-    assert summary.status(found) == FAILED
-    assert {c.part for c in found.property_checks if c.verdict == "fail"} == {
+    result = verify(Request((str(deck),), ("exudyn-tree",), rpm="10", faults="none", execution=execution))
+    assert {c.verdict for c in result.cells} == {"pass"}
+    assert summary.status(result) == FAILED
+    assert {c.part for c in result.property_checks if c.verdict == "fail"} == {
         "flapwise stiffness",
         "edgewise stiffness",
     }
-    assert {c.code for c in found.property_checks if c.quantity == "fingerprint"} == {"southwell", "exudyn-tree"}
+    assert {c.code for c in result.property_checks if c.quantity == "fingerprint"} == {"southwell", "exudyn-tree"}
 
 
 def test_a_blade_changed_by_the_user_is_not_compared_with_its_file(deck: Path) -> None:
-    found = checked(deck, changes=("EI_flap=*1.1",))
-    assert {(c.quantity, c.verdict) for c in found.property_checks} == {("fingerprint", "pass")}
+    checks = checked(deck, changes=("EI_flap=*1.1",))
+    assert {(c.quantity, c.verdict) for c in checks.property_checks} == {("fingerprint", "pass")}
 
 
 def test_without_a_parser_the_row_says_how_to_install_it(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,18 +115,18 @@ def test_without_a_parser_the_row_says_how_to_install_it(deck: Path, monkeypatch
         raise stations.NotInstalledError(f"{distribution} is not installed: {stations.HINT}")
 
     monkeypatch.setattr(openfast, "parser", absent)
-    found = checked(deck)
-    (row,) = (c for c in found.property_checks if c.quantity == "reading")
+    checks = checked(deck)
+    (row,) = (c for c in checks.property_checks if c.quantity == "reading")
     assert (row.verdict, row.reason) == ("not run", f"weio is not installed: {stations.HINT}")
-    assert properties.lines(found)[0].startswith("Second reading: none: weio is not installed")
-    assert summary.status(found) == PASSED
+    assert properties.lines(checks)[0].startswith("Second reading: none: weio is not installed")
+    assert summary.status(checks) == PASSED
 
 
 def test_a_csv_is_read_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     offset = blades.offset
     monkeypatch.setattr(blades, "offset", lambda mass, ahead: offset(mass, -ahead))
-    found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
-    wrong = [c for c in found.property_checks if c.verdict == "fail"]
+    checks = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
+    wrong = [c for c in checks.property_checks if c.verdict == "fail"]
     assert {c.part for c in wrong if c.quantity == "reading"} == {"first moments of mass"}
     assert not [c for c in wrong if c.quantity == "fingerprint"], "the models are those of the blade as read"
 
@@ -139,9 +139,9 @@ def test_a_wrong_sampling_of_core_is_named_for_core_alone(tmp_path: Path, monkey
 
     monkeypatch.setattr(core_sampling, "_interpolate", heavier)
     monkeypatch.setattr(tasks, "fingerprints", in_this_process)
-    found = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
-    assert evidence.verdict(found) == "No: the model of Southwell's own solver differs from the stations of the blade."
-    first = properties.lines(found)[0]
+    checks = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
+    assert evidence.verdict(checks) == "No: the model of Southwell's own solver differs from the stations of the blade."
+    first = properties.lines(checks)[0]
     assert first.startswith(
         "Model of Southwell's own solver: mass: 1212 kg in the code's model, 1200 kg by quadrature of the stations: +1 %"
     )
@@ -149,8 +149,8 @@ def test_a_wrong_sampling_of_core_is_named_for_core_alone(tmp_path: Path, monkey
 
 def test_a_code_that_reports_nothing_says_so(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tasks, "fingerprints", lambda *_: [None])
-    found = checked(deck, ["exudyn-tree"])
-    rows = [c for c in found.property_checks if c.code == "exudyn-tree"]
+    checks = checked(deck, ["exudyn-tree"])
+    rows = [c for c in checks.property_checks if c.code == "exudyn-tree"]
     assert [(c.verdict, c.reason) for c in rows] == [("not applicable", "the code reports no mass")]
     assert isinstance(rows[0], PropertyCheck)
 

@@ -61,11 +61,11 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "nrel-5mw-blade.dat"
 
 @pytest.mark.parametrize("name", DECKS)
 def test_both_readings_agree(tmp_path: Path, name: str) -> None:
-    found = again(*deck(tmp_path, name))
-    assert not found.missing
-    assert [p.where(found.reader) for p in found.wrong] == []
-    assert len(found.properties) >= 15
-    assert max(p.difference for p in found.properties) < 1e-9
+    repeated = again(*deck(tmp_path, name))
+    assert not repeated.missing
+    assert [p.where(repeated.reader) for p in repeated.wrong] == []
+    assert len(repeated.properties) >= 15
+    assert max(p.difference for p in repeated.properties) < 1e-9
 
 
 @pytest.mark.parametrize(
@@ -81,15 +81,15 @@ def test_both_readings_agree(tmp_path: Path, name: str) -> None:
     ],
 )
 def test_both_readings_of_published_blades_agree(name: str, mount: Mount | None) -> None:
-    found = again(real(name), mount)
-    assert max(p.difference for p in found.properties) < 1e-12
+    repeated = again(real(name), mount)
+    assert max(p.difference for p in repeated.properties) < 1e-12
 
 
 def test_both_readings_of_the_example_agree() -> None:
     """Its description, "distributed properties of …", reads to weio like the head of BeamDyn's table."""
-    found = again(EXAMPLE, Mount(length=61.5, hub_radius=1.5))
-    assert not found.missing
-    assert max(p.difference for p in found.properties) < 1e-12
+    repeated = again(EXAMPLE, Mount(length=61.5, hub_radius=1.5))
+    assert not repeated.missing
+    assert max(p.difference for p in repeated.properties) < 1e-12
 
 
 def altered(patch: pytest.MonkeyPatch, module: Any, change: Callable[[dict[str, Any]], dict[str, Any]]) -> None:
@@ -276,8 +276,8 @@ def test_a_mistake_in_a_reader_is_found_by_the_name_of_the_property(
         path, mount = deck(tmp_path, name)
     assert not again(path, mount).wrong
     make(monkeypatch)
-    found = again(path, mount)
-    assert {p.name for p in found.wrong} == expected
+    repeated = again(path, mount)
+    assert {p.name for p in repeated.wrong} == expected
 
 
 TABLES = {
@@ -337,17 +337,17 @@ EDGEWISE = "edgewise stiffness at station 5 (50 m): reader 3e+06 N m², {} 1.65e
 def test_the_reason_names_property_station_and_both_values(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path, mount = deck(tmp_path, "elastodyn_main.dat")
     monkeypatch.setattr(elastodyn, "section_stiffness", exchanged(elastodyn.section_stiffness, 2, 3))
-    found = again(path, mount)
-    wrong = [p.where(found.reader) for p in found.wrong]
+    repeated = again(path, mount)
+    wrong = [p.where(repeated.reader) for p in repeated.wrong]
     assert [line.partition(" at ")[0] for line in wrong] == ["flapwise stiffness", "edgewise stiffness"]
-    assert wrong[1] == EDGEWISE.format(found.reader)
+    assert wrong[1] == EDGEWISE.format(repeated.reader)
 
 
 def test_a_mount_that_the_user_states_is_not_compared(tmp_path: Path) -> None:
     path, _ = deck(tmp_path, "elastodyn_main.dat")
-    found = again(path, Mount(hub_radius=3.0, multipliers=(1.0, 1.0, 1.1)))
-    assert not found.wrong
-    assert "hub radius" not in {p.name for p in found.properties}
+    repeated = again(path, Mount(hub_radius=3.0, multipliers=(1.0, 1.0, 1.1)))
+    assert not repeated.wrong
+    assert "hub radius" not in {p.name for p in repeated.properties}
 
 
 def test_a_parser_that_is_not_installed_is_named_with_its_hint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -357,12 +357,12 @@ def test_a_parser_that_is_not_installed_is_named_with_its_hint(tmp_path: Path, m
         raise second_stations.NotInstalledError(f"{distribution} is not installed: {second_stations.HINT}")
 
     monkeypatch.setattr(second_openfast, "parser", absent)
-    found = again(path, mount)
-    assert found.missing.startswith("weio is not installed: pip install '.[readers]'")
-    assert not found.wrong
+    repeated = again(path, mount)
+    assert repeated.missing.startswith("weio is not installed: pip install '.[readers]'")
+    assert not repeated.wrong
 
 
 def test_a_file_that_the_parser_does_not_read_is_no_difference() -> None:
-    found = again(decks.BLADES / "beamdyn_old_main.dat")
-    assert found.missing.startswith("BeamDyn: ")
-    assert not found.properties
+    repeated = again(decks.BLADES / "beamdyn_old_main.dat")
+    assert repeated.missing.startswith("BeamDyn: ")
+    assert not repeated.properties

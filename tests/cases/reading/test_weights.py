@@ -86,19 +86,19 @@ REPORT += ("pybmodes", "scikit-fem-solid", "exact-beam", "assumed-modes", "yoo-s
 
 
 def code(name: str) -> BladeAdapter:
-    found = registry.code(registry.locate(name))
-    assert isinstance(found, BladeAdapter)
-    if found.version() is None:
+    result = registry.code(registry.locate(name))
+    assert isinstance(result, BladeAdapter)
+    if result.version() is None:
         pytest.skip(f"{name} is not installed")
-    return found
+    return result
 
 
 def models(code: BladeAdapter, blade: Blade) -> list[Fingerprint]:
     out = []
     for elements in code.levels[:2]:
-        found = code.fingerprint(blade, elements)
-        assert found is not None
-        out.append(found)
+        result = code.fingerprint(blade, elements)
+        assert result is not None
+        out.append(result)
     return out
 
 
@@ -108,16 +108,16 @@ def test_every_model_weighs_what_its_stations_weigh(name: str) -> None:
     fitting = [blade for blade in BLADES.values() if adapter.unsupported(blade) is None]
     assert fitting
     for blade in fitting:
-        found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade), adapter.effects.rotary_inertia)
-        assert [w.line for w in found if abs(w.difference) > 1e-4] == [], blade.name
-        assert found[0].difference == pytest.approx(0.0, abs=1e-9)
+        result = wt.weights(blade, wt.stations_of(blade), models(adapter, blade), adapter.effects.rotary_inertia)
+        assert [w.line for w in result if abs(w.difference) > 1e-4] == [], blade.name
+        assert result[0].difference == pytest.approx(0.0, abs=1e-9)
 
 
 @pytest.mark.parametrize("blade", BLADES.values(), ids=BLADES)
 def test_core_weighs_what_its_stations_weigh(blade: Blade) -> None:
-    found = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
-    assert len(found) == 12
-    assert max(abs(w.difference) for w in found) < 1e-8
+    result = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
+    assert len(result) == 12
+    assert max(abs(w.difference) for w in result) < 1e-8
 
 
 def test_codes_that_report_are_those_listed() -> None:
@@ -156,9 +156,9 @@ def test_an_error_of_one_sampling_is_not_in_the_models_of_the_other(
     adapter = None if name == "core" else code(name)
     assembled = [wt.of_core(blade)] if adapter is None else models(adapter, blade)
     rotary = adapter is None or adapter.effects.rotary_inertia
-    found = wt.weights(blade, wt.stations_of(blade), assembled, rotary)
+    result = wt.weights(blade, wt.stations_of(blade), assembled, rotary)
     own = (module is sampling) == (name in SAMPLE_THEMSELVES)
-    assert found[0].difference == pytest.approx(0.01 if own else 0.0, abs=1e-8)
+    assert result[0].difference == pytest.approx(0.01 if own else 0.0, abs=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -170,11 +170,11 @@ def test_one_per_cent_of_mass_is_found_by_name(
 ) -> None:
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
     monkeypatch.setattr(module, function, heavier(getattr(module, function)))
-    found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade))
-    wrong = {w.name: w.difference for w in found if w.verdict == "fail"}
+    result = wt.weights(blade, wt.stations_of(blade), models(adapter, blade))
+    wrong = {w.name: w.difference for w in result if w.verdict == "fail"}
     assert set(wrong) == {"mass", "first moment of mass along x", "inertia about the rotor's axis"}
     assert wrong["mass"] == pytest.approx(0.01, rel=1e-3)
-    line = next(w.line for w in found if w.name == "mass")
+    line = next(w.line for w in result if w.name == "mass")
     assert line.startswith("mass: ")
     assert line.endswith(" kg by quadrature of the stations: +1 %")
 
@@ -212,8 +212,8 @@ def test_one_per_cent_of_stiffness_is_found_by_name(
     blade = tapered(pitch=0.0, twist=np.zeros(4))
     monkeypatch.setattr(module, function, softer(getattr(module, function)))
     assembled = [wt.of_core(blade)] if name == "core" else models(code(name), blade)
-    found = wt.weights(blade, wt.stations_of(blade), assembled)
-    wrong = {w.name: w.difference for w in found if w.verdict == "fail"}
+    result = wt.weights(blade, wt.stations_of(blade), assembled)
+    wrong = {w.name: w.difference for w in result if w.verdict == "fail"}
     assert {"tip flexibility along z", "tip flexibility about y"} <= set(wrong)
     assert not {"tip flexibility along y", "tip flexibility about z", "tip flexibility about x"} & set(wrong)
     assert wrong["tip flexibility along z"] == pytest.approx(1 / 0.99 - 1, rel=1e-2)
@@ -237,8 +237,8 @@ def test_a_coupling_of_the_tip_is_compared() -> None:
     between = wt.BENDS.index(("tip flexibility along y by force along z", "m/N"))
     mirrored = list(assembled.flexibility)
     mirrored[between] *= -1.0
-    found = wt.weights(blade, wt.stations_of(blade), [replace(assembled, flexibility=tuple(mirrored))])
-    assert {w.name for w in found if w.verdict == "fail"} == {"tip flexibility along y by force along z"}
+    result = wt.weights(blade, wt.stations_of(blade), [replace(assembled, flexibility=tuple(mirrored))])
+    assert {w.name for w in result if w.verdict == "fail"} == {"tip flexibility along y by force along z"}
 
 
 def test_a_code_without_rotary_inertia_is_compared_without_it() -> None:
@@ -256,8 +256,8 @@ def test_one_per_cent_of_mass_in_one_adapter_is_found(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(input_file, "sample", sampled)
     adapter, blade = code("pybmodes"), tapered()
-    found = wt.weights(blade, wt.stations_of(blade), models(adapter, blade), rotary=False)
-    assert found[0].difference == pytest.approx(0.01, rel=1e-6)
+    result = wt.weights(blade, wt.stations_of(blade), models(adapter, blade), rotary=False)
+    assert result[0].difference == pytest.approx(0.01, rel=1e-6)
 
 
 def test_fingerprints_cross_the_process_unchanged() -> None:

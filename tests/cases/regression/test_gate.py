@@ -35,17 +35,26 @@ def compared(after: Run, before: Run = BEFORE, **options) -> gate.Comparison:
 
 
 def test_the_same_run_passes() -> None:
-    found = compared(BEFORE)
-    assert found.passed(strict=True)
-    assert (found.moved, found.worse, found.gone, found.undetected, found.better, found.new) == ((),) * 6
+    comparison = compared(BEFORE)
+    assert comparison.passed(strict=True)
+    assert (
+        comparison.moved,
+        comparison.worse,
+        comparison.gone,
+        comparison.undetected,
+        comparison.better,
+        comparison.new,
+    ) == ((),) * 6
 
 
 @pytest.mark.parametrize(("change", "listed"), [(0.9e-9, False), (1.1e-9, True), (-1.1e-9, True), (1e-3, True)])
 def test_a_frequency_moved_is_listed_and_counts_if_asked_for(change: float, listed: bool) -> None:
-    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 1, value=20.0 * (1 + change))))
-    assert [(c.after.mode, c.moved) for c in found.moved] == ([(2, pytest.approx(change, rel=1e-6))] if listed else [])
-    assert found.passed()
-    assert found.passed(strict=True) is not listed
+    comparison = compared(replace(BEFORE, cells=at(BEFORE.cells, 1, value=20.0 * (1 + change))))
+    assert [(c.after.mode, c.moved) for c in comparison.moved] == (
+        [(2, pytest.approx(change, rel=1e-6))] if listed else []
+    )
+    assert comparison.passed()
+    assert comparison.passed(strict=True) is not listed
 
 
 DAMPING = replace(CELL, mode=1, quantity="damping", value=0.14, reference=0.14, difference=0.0, full=None)
@@ -54,9 +63,9 @@ DAMPING = replace(CELL, mode=1, quantity="damping", value=0.14, reference=0.14, 
 @pytest.mark.parametrize(("value", "moved"), [(0.14 + 0.9e-9, False), (0.14 + 1.1e-9, True), (0.0, True)])
 def test_a_damping_ratio_is_another_cell_and_moves_by_its_difference(value: float, moved: bool) -> None:
     before = replace(BEFORE, cells=(*BEFORE.cells, DAMPING))
-    found = compared(replace(BEFORE, cells=(*BEFORE.cells, replace(DAMPING, value=value))), before)
+    comparison = compared(replace(BEFORE, cells=(*BEFORE.cells, replace(DAMPING, value=value))), before)
     changes = [pytest.approx(value - 0.14, rel=1e-6)] if moved else []
-    assert [c.moved for c in found.moved] == changes
+    assert [c.moved for c in comparison.moved] == changes
     lost = compared(BEFORE, before)
     assert [(g.point.mode, g.point.quantity) for g in lost.gone] == [(1, "damping")]
     worse = compared(replace(before, cells=(*BEFORE.cells, replace(DAMPING, verdict="fail"))), before)
@@ -70,25 +79,31 @@ VERDICTS = ("pass", "coarse", "known difference", "estimate", "inconclusive", "f
 @pytest.mark.parametrize("after", VERDICTS)
 def test_a_worse_verdict_counts_and_a_better_one_does_not(before, after) -> None:
     old = replace(BEFORE, cells=at(BEFORE.cells, 0, verdict=before))
-    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict=after)), old)
+    comparison = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict=after)), old)
     steps = VERDICTS.index(after) - VERDICTS.index(before)
-    assert (len(found.worse), len(found.better), found.passed()) == (int(steps > 0), int(steps < 0), steps <= 0)
+    assert (len(comparison.worse), len(comparison.better), comparison.passed()) == (
+        int(steps > 0),
+        int(steps < 0),
+        steps <= 0,
+    )
 
 
 @pytest.mark.parametrize("verdict", VERDICTS)
 def test_a_cell_that_was_not_there_counts_if_it_is_a_miss(verdict) -> None:
     new = replace(CELL, mode=4, verdict=verdict)
-    found = compared(replace(BEFORE, cells=(*BEFORE.cells, new)))
-    assert found.passed() is (verdict not in ("inconclusive", "fail"))
-    assert [p.mode for p in found.new] == [4]
+    comparison = compared(replace(BEFORE, cells=(*BEFORE.cells, new)))
+    assert comparison.passed() is (verdict not in ("inconclusive", "fail"))
+    assert [p.mode for p in comparison.new] == [4]
 
 
 @pytest.mark.parametrize("verdict", ["not run", "not applicable", "fail"])
 def test_a_code_that_answers_no_more_counts(verdict) -> None:
     silent = replace(CELL, code="other", mode=0, family="", value=None, verdict=verdict)
-    found = compared(replace(BEFORE, cells=(*BEAM, silent)))
-    assert [(g.point.code, g.point.mode, g.instead) for g in found.gone] == [("other", k, verdict) for k in (1, 2, 3)]
-    assert not found.passed()
+    comparison = compared(replace(BEFORE, cells=(*BEAM, silent)))
+    assert [(g.point.code, g.point.mode, g.instead) for g in comparison.gone] == [
+        ("other", k, verdict) for k in (1, 2, 3)
+    ]
+    assert not comparison.passed()
 
 
 def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> None:
@@ -103,9 +118,9 @@ def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> N
 def test_a_measured_point_that_vanished_does_not_count_and_an_answer_that_became_one_does() -> None:
     rig = replace(CELL, code="rig", role="measured", verdict="measured")
     assert compared(BEFORE, replace(BEFORE, cells=(*BEFORE.cells, rig))).passed(strict=True)
-    found = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict="measured")))
-    assert [g.point.mode for g in found.gone] == [1]
-    assert not found.passed()
+    comparison = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict="measured")))
+    assert [g.point.mode for g in comparison.gone] == [1]
+    assert not comparison.passed()
 
 
 def test_a_control_that_nobody_catches_any_more_counts() -> None:
@@ -120,18 +135,18 @@ def test_a_control_that_nobody_catches_any_more_counts() -> None:
 
 
 def test_a_blind_harness_counts_whatever_was_before() -> None:
-    found = compared(BEFORE, missed=["frozen frame"])
-    assert not found.passed()
-    assert "1 seeded faults missed" in gate_text.verdict(found, strict=False)
+    comparison = compared(BEFORE, missed=["frozen frame"])
+    assert not comparison.passed()
+    assert "1 seeded faults missed" in gate_text.verdict(comparison, strict=False)
 
 
 def test_a_wider_target_counts_and_a_narrower_one_does_not() -> None:
     wide = replace(BEFORE, cells=at(BEFORE.cells, 0, target=2e-3))
-    found = compared(wide)
-    assert [(c.after.mode, c.after.target) for c in found.loosened] == [(1, 2e-3)]
-    assert not found.passed()
-    assert "1 with a wider target" in gate_text.verdict(found, strict=False)
-    assert any(title.startswith("Wider target") for title, _ in gate_text.sections(found, {}))
+    comparison = compared(wide)
+    assert [(c.after.mode, c.after.target) for c in comparison.loosened] == [(1, 2e-3)]
+    assert not comparison.passed()
+    assert "1 with a wider target" in gate_text.verdict(comparison, strict=False)
+    assert any(title.startswith("Wider target") for title, _ in gate_text.sections(comparison, {}))
     assert compared(BEFORE, wide).passed()
 
 
@@ -204,8 +219,8 @@ def test_annotations_name_the_case_s_file_and_are_escaped(tmp_path: Path) -> Non
 def test_a_summary_s_tables_are_cut_and_say_so() -> None:
     many = tuple(replace(CELL, mode=k, value=float(k)) for k in range(1, 72))
     after = tuple(replace(c, value=(c.value or 0.0) * (1 + 1e-6)) for c in many)
-    found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
-    shown = gate_text.markdown(found, False, {})
+    comparison = compared(replace(RUN, cells=after), replace(RUN, cells=many))
+    shown = gate_text.markdown(comparison, False, {})
     assert "✔ gate passed: 71 cells" in shown
     assert "… and 21 more" in shown
     assert shown.count("+1.0e-06") == 50
@@ -263,8 +278,8 @@ def test_a_failed_baseline_is_refused_unless_it_is_accepted(folders, capsys: pyt
 def test_the_verdict_comes_first_and_tables_are_short_and_in_the_units_of_the_case() -> None:
     many = tuple(replace(CELL, mode=k, omega=np.pi, value=2.0 * np.pi * k) for k in range(1, 72))
     after = tuple(replace(c, value=(c.value or 0.0) * (1 + 1e-3)) for c in many)
-    found = compared(replace(RUN, cells=after), replace(RUN, cells=many))
-    (table,) = gate_text.tables(found, {CELL.case: BY_KEY["rpm"]}, 120)
+    comparison = compared(replace(RUN, cells=after), replace(RUN, cells=many))
+    (table,) = gate_text.tables(comparison, {CELL.case: BY_KEY["rpm"]}, 120)
     assert isinstance(table, Table)
     assert table.row_count == 10
     assert "the first 10 of 71" in str(table.title)

@@ -44,11 +44,11 @@ MADE = datetime(2026, 2, 3, 4, 5, 6, tzinfo=UTC)
 def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "abc", "a machine", MADE))
-    (found,) = history.read(file).entries
+    (result,) = history.read(file).entries
     beam = Point("beam", "some-code", 10.0, 1, "edgewise", 11.71095, 8.1e-5, 1e-6, "pass", 1e-3)
     none = Point("beam", "some-code", 10.0, 0, "", None, 8.1e-5, 1e-6, "not run", 1e-3)
     detection = Detection("frozen frame", "beam", 10.0, ("some-code",))
-    assert found == Entry(
+    assert result == Entry(
         "abc", "2026-02-03T04:05:06+00:00", "a machine", {"some-code": "1.0"}, (beam, none), (detection,)
     )
     assert beam.key == ("beam", "some-code", 10.0, 1, "frequency", "")
@@ -75,13 +75,13 @@ def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     file, writers, times = tmp_path / "history.jsonl", 4, 25
     jobs = [subprocess.Popen([sys.executable, "-c", WRITER, source, file, str(w), str(times)]) for w in range(writers)]
     assert [job.wait(120) for job in jobs] == [0] * writers
-    found = history.read(file)
-    assert found.torn == ()
-    assert {e.commit for e in found.entries} == {f"{w}-{k}" for w in range(writers) for k in range(times)}
-    assert all(len(e.cells) == 1500 for e in found.entries)
+    content = history.read(file)
+    assert content.torn == ()
+    assert {e.commit for e in content.entries} == {f"{w}-{k}" for w in range(writers) for k in range(times)}
+    assert all(len(e.cells) == 1500 for e in content.entries)
     for w in range(writers):  # each in its own order
-        mine = [e.commit for e in found.entries if e.commit.startswith(f"{w}-")]
-        assert mine == [f"{w}-{k}" for k in range(times)]
+        own_answer = [e.commit for e in content.entries if e.commit.startswith(f"{w}-")]
+        assert own_answer == [f"{w}-{k}" for k in range(times)]
     assert {p.name for p in tmp_path.iterdir()} == {"source.jsonl", "history.jsonl"}  # no lock file is left
 
 
@@ -93,14 +93,14 @@ def test_a_line_cut_short_is_named_and_spoils_no_other(tmp_path: Path, kept: int
     history.append(file, history.entry(RUN, "second", date=MADE))
     cut = file.read_bytes()[len(whole) :][:kept]
     file.write_bytes(whole + cut)
-    found = history.read(file)
+    content = history.read(file)
     # a line that lacks only its end is whole
-    assert [e.commit for e in found.entries] == (["first", "second"] if kept == -1 else ["first"])
-    assert found.torn == (() if kept == -1 else (2,))
+    assert [e.commit for e in content.entries] == (["first", "second"] if kept == -1 else ["first"])
+    assert content.torn == (() if kept == -1 else (2,))
     history.append(file, history.entry(RUN, "third", date=MADE))
     after = history.read(file)
-    assert after.torn == found.torn
-    assert [e.commit for e in after.entries] == [*(e.commit for e in found.entries), "third"]
+    assert after.torn == content.torn
+    assert [e.commit for e in after.entries] == [*(e.commit for e in content.entries), "third"]
 
 
 def test_within_a_character(tmp_path: Path) -> None:
@@ -190,12 +190,12 @@ def test_an_incomplete_run_is_not_what_others_are_compared_with(
 def test_a_writer_waits_for_its_turn(tmp_path: Path) -> None:
     source, file = tmp_path / "source.jsonl", tmp_path / "history.jsonl"
     history.append(source, history.entry(RUN, "source", date=MADE))
-    with file.open("ab") as mine:
-        portalocker.lock(mine, portalocker.LockFlags.EXCLUSIVE)
+    with file.open("ab") as own_answer:
+        portalocker.lock(own_answer, portalocker.LockFlags.EXCLUSIVE)
         job = subprocess.Popen([sys.executable, "-c", WRITER, source, file, "w", "1"])
         with pytest.raises(subprocess.TimeoutExpired):
             job.wait(4)  # what it needs to start is half of that
         assert file.stat().st_size == 0
-        portalocker.unlock(mine)
+        portalocker.unlock(own_answer)
     assert job.wait(60) == 0
     assert [e.commit for e in history.read(file).entries] == ["w-0"]

@@ -52,11 +52,11 @@ CHECKED = ("pass", "inconclusive", "fail")
 @pytest.mark.parametrize("after", [None, "pass", "inconclusive", "fail", "not run", "not applicable"])
 def test_a_check_that_is_worse_or_no_longer_made_counts(before: Verdict | None, after: Verdict | None) -> None:
     runs = [replace(RIGHT, property_checks=(replace(READING, verdict=v),) if v else ()) for v in (before, after)]
-    found = compared(runs[1], runs[0])
+    comparison = compared(runs[1], runs[0])
     order = [*CHECKED, None, "not run", "not applicable"]
     now = min(order.index(after), len(CHECKED))
     counts = now > order.index(before) if before in CHECKED else after == "fail"
-    assert (len(found.properties), found.passed()) == (int(counts), not counts)
+    assert (len(comparison.properties), comparison.passed()) == (int(counts), not counts)
 
 
 def test_a_partial_run_is_compared_in_its_own_cases() -> None:
@@ -78,15 +78,15 @@ def test_a_fault_without_effect_is_no_failure_of_a_baseline() -> None:
 
 
 def test_the_gate_says_which_property() -> None:
-    found = compared(WRONG)
-    assert gate_text.verdict(found, False).endswith("1 properties wrong or no longer checked")
-    ((title, (row,)),) = gate_text.sections(found, {})
+    comparison = compared(WRONG)
+    assert gate_text.verdict(comparison, False).endswith("1 properties wrong or no longer checked")
+    ((title, (row,)),) = gate_text.sections(comparison, {})
     assert title == "Properties that are wrong or no longer checked"
     assert row == {
         "case": "beam", "check": "reading, weio", "property": "edgewise stiffness", "difference": "+0.9",
         "verdict": "pass → fail",
     }  # fmt: skip
-    (line,) = gate_text.annotations(found, Path("/none"), {})
+    (line,) = gate_text.annotations(comparison, Path("/none"), {})
     assert line == "::error title=beam::reading by weio: edgewise stiffness (pass → fail)"
     lost = compared(replace(RIGHT, property_checks=()))
     assert [row["verdict"] for row in gate_text.sections(lost, {})[0][1]] == ["pass → not there"] * 3

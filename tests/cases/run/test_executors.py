@@ -84,10 +84,10 @@ def test_an_address_without_a_scheduler_is_one_line(address: str, said: str, mon
 
 
 def test_software_is_versions_and_sources() -> None:
-    found = dict(installed(Software(("numpy", "no-such-package"), ("no-such-code",))))
-    assert found["numpy"] == import_module("numpy").__version__
-    assert found["no-such-package"] == found["the source of no-such-code"] == ""
-    assert len(found["Southwell or its libraries"]) == 12
+    result = dict(installed(Software(("numpy", "no-such-package"), ("no-such-code",))))
+    assert result["numpy"] == import_module("numpy").__version__
+    assert result["no-such-package"] == result["the source of no-such-code"] == ""
+    assert len(result["Southwell or its libraries"]) == 12
 
 
 @pytest.fixture(scope="module")
@@ -184,11 +184,11 @@ def test_slurm_jobs_are_submitted_and_cancelled(tmp_path: Path, monkeypatch: pyt
 
 @pytest.mark.nightly
 def test_verify_gives_the_same_results_on_a_cluster(cluster: Any, tmp_path: Path) -> None:
-    found = {}
+    result = {}
     for name, options in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):
         line = ["verify", "tip-mass", "--codes", "exact-beam", "--faults", "none", "--out", name, *options]
         done = subprocess.run([sys.executable, "-m", "southwell", *line], cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
-        found[name] = (tmp_path / name / "results.jsonl").read_text()
-    assert found["here"] == found["there"]
-    assert len(found["here"].splitlines()) > 10
+        result[name] = (tmp_path / name / "results.jsonl").read_text()
+    assert result["here"] == result["there"]
+    assert len(result["here"].splitlines()) > 10

@@ -102,16 +102,16 @@ def test_an_unknown_order_doubles_the_elements() -> None:
 
 def test_a_level_with_as_many_elements_as_the_one_before_is_a_failure() -> None:
     compared = Compared(of(1.0, 1, 0.0), (0,))
-    (found,) = solve(
+    (solution,) = solve(
         lambda runs: [of(w, min(n, 20), 0.0) for w, n, _ in runs],
         [1.0],
         Refining((10, 20, 30), ORDER, 60),
         1,
         lambda *_: compared,
     )
-    assert found.failure
-    assert found.failure.kind == "nonsense"
-    assert [answer.elements for answer in found.answers] == [10, 20]
+    assert solution.failure
+    assert solution.failure.kind == "nonsense"
+    assert [answer.elements for answer in solution.answers] == [10, 20]
 
 
 def test_the_uncertainty_that_a_code_states_is_added_to_that_of_refinement() -> None:

@@ -32,8 +32,8 @@ def test_a_latin_hypercube_is_within_one_sample_of_its_distribution(distribution
 
 def test_each_value_of_a_list_occurs_equally_often() -> None:
     values = sample({"mass": Values((0.5, 1.0, 3.0))}, 301, seed=3)[:, 0]
-    found, counts = np.unique(values, return_counts=True)
-    assert found.tolist() == [0.5, 1.0, 3.0]
+    result, counts = np.unique(values, return_counts=True)
+    assert result.tolist() == [0.5, 1.0, 3.0]
     assert counts.sum() == 301
     assert abs(counts - 301 / 3).max() <= 1.0
 
@@ -64,9 +64,9 @@ def test_a_task_does_not_depend_on_the_tasks_before_it(tmp_path: Path) -> None:
 def test_every_blade_has_the_same_samples(tmp_path: Path) -> None:
     one = study(tmp_path, samples=4, blade="yoo-shin-chordwise")
     assert len(one.blades) > 1
-    found = dict(tasks(one, range(4 * len(one.blades))))
-    assert all(task.changes == found[number % 4].changes for number, task in found.items())
-    assert [found[4 * k].blade.name for k in range(len(one.blades))] == [blade.name for blade in one.blades]
+    result = dict(tasks(one, range(4 * len(one.blades))))
+    assert all(task.changes == result[number % 4].changes for number, task in result.items())
+    assert [result[4 * k].blade.name for k in range(len(one.blades))] == [blade.name for blade in one.blades]
 
 
 def test_absolute_values_are_values_and_others_are_factors() -> None:

@@ -45,20 +45,20 @@ def test_four_times_the_flapwise_stiffness_doubles_the_flapwise_frequencies_at_r
     nominal = {
         r.name: r.frequency for r in next(sweep(library.load("park-cantilever").variants[0].blade, [0.0], None, 4))
     }
-    found = {r.name: r.frequency_rad_s for r in rows(tmp_path / "out.jsonl")}
+    result = {r.name: r.frequency_rad_s for r in rows(tmp_path / "out.jsonl")}
     for name, ratio in (("flapwise 1", 2.0), ("edgewise 1", 1.0)):
-        assert found[name] == pytest.approx(ratio * nominal[name], rel=2e-6)  # both solved to 1e-6
+        assert result[name] == pytest.approx(ratio * nominal[name], rel=2e-6)  # both solved to 1e-6
 
 
 def test_every_sample_speed_and_mode_has_a_row(tmp_path: Path) -> None:
     one = study(tmp_path)
     solved(one, tmp_path / "out.jsonl")
-    found = rows(tmp_path / "out.jsonl")
-    assert sorted((r.sample, r.omega_rad_s, r.mode) for r in found) == [
+    result = rows(tmp_path / "out.jsonl")
+    assert sorted((r.sample, r.omega_rad_s, r.mode) for r in result) == [
         (sample, omega, mode) for sample in range(6) for omega in (0.0, 10.0) for mode in (1, 2, 3)
     ]
-    assert all(r.frequency_hz == pytest.approx(r.frequency_rad_s / (2 * np.pi)) for r in found)  # type: ignore[operator]
-    assert all(r.relative_uncertainty is not None and 0 < r.relative_uncertainty < 0.1 for r in found)
+    assert all(r.frequency_hz == pytest.approx(r.frequency_rad_s / (2 * np.pi)) for r in result)  # type: ignore[operator]
+    assert all(r.relative_uncertainty is not None and 0 < r.relative_uncertainty < 0.1 for r in result)
 
 
 def test_a_speed_without_a_steady_state_costs_its_own_row_only(tmp_path: Path) -> None:
@@ -80,13 +80,13 @@ def test_a_speed_without_a_steady_state_costs_its_own_row_only(tmp_path: Path) -
 def test_a_factor_that_is_not_positive_gives_the_reason_at_every_speed(tmp_path: Path) -> None:
     wide = text(samples=8).replace("standard_deviation = 0.05", "standard_deviation = 2.0")
     solved(study(tmp_path, wide), tmp_path / "out.jsonl")
-    found = rows(tmp_path / "out.jsonl")
-    negative = [r for r in found if r.properties["EI_flap"] <= 0]
+    result = rows(tmp_path / "out.jsonl")
+    negative = [r for r in result if r.properties["EI_flap"] <= 0]
     assert {r.sample for r in negative} != set()
     assert all("factor is positive" in (r.reason or "") and r.frequency_hz is None for r in negative)
     assert len(negative) == 2 * len({r.sample for r in negative})
-    counts = outcome(found)
-    assert (counts.missing, counts.frequencies) == (len(negative), len(found) - len(negative))
+    counts = outcome(result)
+    assert (counts.missing, counts.frequencies) == (len(negative), len(result) - len(negative))
 
 
 def test_a_defect_of_the_solver_costs_rows_and_is_counted(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -278,12 +278,12 @@ def test_memory_does_not_grow_with_the_number_of_answers(tmp_path: Path) -> None
 
 
 def test_statistics_are_those_of_the_rows() -> None:
-    found = [
+    results = [
         Row(blade="b", sample=k, properties={}, omega_rad_s=1.0, mode=1, name=name, frequency_rad_s=value)
         for k, (name, value) in enumerate([("flapwise 1", 1.0), ("edgewise 1", 2.0), ("flapwise 1", 6.0)])
     ]
     failed = Row(blade="b", sample=3, properties={}, omega_rad_s=1.0, reason="unstable")
-    (one,) = spreads([*found, failed]).to_dict("records")
+    (one,) = spreads([*results, failed]).to_dict("records")
     assert (one["name"], one["samples"], one["mean"]) == ("flapwise 1", 3, 3.0)
     assert one["deviation"] == pytest.approx(np.sqrt(7.0))
     assert (one["low"], one["high"]) == (pytest.approx(1.1), pytest.approx(5.6))  # between the ordered values

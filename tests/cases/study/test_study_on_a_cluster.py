@@ -27,11 +27,11 @@ def test_workers_killed_at_twenty_random_moments(tmp_path: Path) -> None:
     serial = solved(one, tmp_path / "serial.jsonl")
     with clusters.local(2) as cluster, executor(scheduler=cluster.scheduler_address) as pool:
         killer = clusters.Killer(cluster, SAMPLES, KILLS, seed, delay=0.1)
-        found = solved(one, tmp_path / "cluster.jsonl", pool, on_progress=killer)
+        solution = solved(one, tmp_path / "cluster.jsonl", pool, on_progress=killer)
         killer.wait()
     assert len(set(killer.killed)) == KILLS
-    assert len(found) == 1 + SAMPLES * 2 * 3
-    assert found == serial
+    assert len(solution) == 1 + SAMPLES * 2 * 3
+    assert solution == serial
 
 
 def rows(path: Path) -> int:

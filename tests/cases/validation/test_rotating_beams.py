@@ -15,9 +15,9 @@ def test_at_rest_a_straight_strip_is_a_cantilever(name: str) -> None:
     d = rotating_beams.data()[name]
     length = sum(d["lengths"])
     speed = d["thickness"] * np.sqrt(d["E"] / (12.0 * d["density"]))
-    found = solved(beam(name, 0.0, Factors()), 0.0)
+    solution = solved(beam(name, 0.0, Factors()), 0.0)
     for k, x in enumerate(FIRST_ROOTS, 1):
-        assert found[f"flapwise {k}"][0] == pytest.approx((x / length) ** 2 * speed / (2 * np.pi), rel=1e-3)
+        assert solution[f"flapwise {k}"][0] == pytest.approx((x / length) ** 2 * speed / (2 * np.pi), rel=1e-3)
 
 
 def test_a_swept_tip_keeps_the_beams_length_and_mass() -> None:
@@ -40,9 +40,9 @@ def test_every_measured_frequency_has_its_place() -> None:
 @pytest.mark.parametrize("name", rotating_beams.BEAMS)
 def test_every_point_has_a_simulation_and_an_uncertainty(name: str) -> None:
     d = rotating_beams.data()[name]
-    found = list(rotating_beams.points(name))
-    assert len(found) == np.array(d["frequencies"]).size
-    for point in found:
+    result = list(rotating_beams.points(name))
+    assert len(result) == np.array(d["frequencies"]).size
+    for point in result:
         v = point.validation
         assert v.numerical < 1e-3 * v.simulated
         assert v.inputs > 1e-3 * v.simulated

@@ -84,17 +84,17 @@ def test_a_printed_number_is_not_excused_by_a_discretisation_that_leads_elsewher
     assert wrong
     assert {c.verdict for c in wrong} == {"fail"}
     assert max(abs(c.difference or 0.0) for c in wrong) > 2.0
-    known = [c for c in seeding.cells(trial) if c.verdict == "known difference" and c.role == "table"]
-    assert len(known) == 1
-    assert "its limit under refinement is" in known[0].reason
+    expected = [c for c in seeding.cells(trial) if c.verdict == "known difference" and c.role == "table"]
+    assert len(expected) == 1
+    assert "its limit under refinement is" in expected[0].reason
 
 
 @pytest.mark.slow
 def test_a_column_lost_by_the_adapter_is_a_failure() -> None:
-    found = {c.family: c for c in of("lost")}
-    assert found["flapwise"].verdict == "fail"
-    assert found["flapwise"].reason.startswith("no partner")
-    assert found["edgewise"].verdict == "inconclusive"  # modes without a shape match no mode of core
+    result = {c.family: c for c in of("lost")}
+    assert result["flapwise"].verdict == "fail"
+    assert result["flapwise"].reason.startswith("no partner")
+    assert result["edgewise"].verdict == "inconclusive"  # modes without a shape match no mode of core
     assert status("lost") == 1
 
 
@@ -136,11 +136,11 @@ def test_a_wide_target_is_coarse_and_no_evidence() -> None:
         variants=(replace(case.variants[0], speeds=np.array([10.0])),),
     )
     with ThreadPoolExecutor(1) as executor:
-        found = matrix.run(blades(wide), ["southwell.tests.support.fooling:FAR"], executor, parts=False)
-    cells = [c for c in found.cells if c.code == "far"]
+        result = matrix.run(blades(wide), ["southwell.tests.support.fooling:FAR"], executor, parts=False)
+    cells = [c for c in result.cells if c.code == "far"]
     assert {c.verdict for c in cells} == {"coarse"}
     assert all(abs(c.difference or 0.0) > 0.3 for c in cells)
-    (witness,) = [w for w in witnesses(found, PARK) if w.name == "far"]
+    (witness,) = [w for w in witnesses(result, PARK) if w.name == "far"]
     assert witness.standing == "coarse"
     assert not groups([witness])
     assert not summary.compared(cells)
@@ -174,11 +174,11 @@ def test_a_crash_of_a_finer_refinement_is_stated_with_a_pass() -> None:
 
 def test_a_copy_of_core_is_recognised_by_its_digits() -> None:
     """With invented origins it once was an independent group."""
-    found = run()
+    result = run()
     cells = of("copy")
     assert {c.shares for c in cells} == {"discretisation"}
     assert all("its discretisation, not independent" in c.reason for c in cells)
-    (witness,) = [w for w in witnesses(found, PARK) if w.name == "copy"]
+    (witness,) = [w for w in witnesses(result, PARK) if w.name == "copy"]
     assert witness.kind == "Southwell's model"
 
 
@@ -266,18 +266,18 @@ def test_rounding_of_a_blade_that_cannot_stretch_is_measured() -> None:
     rigid = blade.stiffness.copy()
     rigid[:, 0, 0] = np.inf
     coned = replace(blade, stiffness=rigid, precone=np.radians(-2.5))
-    (mine,), *scaled = (
+    (own_answer,), *scaled = (
         of_blades(core_solver.answers(b, [(0.3, 40, 6)], "half_end", "body_fixed"))
         for b in (coned, *(core_solver.rescaled(coned, factor) for factor in (3.0, 7.0, 0.3, 11.0)))
     )
     first, second, *others = (answer for (answer,) in scaled)
-    noise = rounding(mine, [first, second])
+    noise = rounding(own_answer, [first, second])
     for other in others:
         assert not isinstance(other, Failure)
-        assert not isinstance(mine, Failure)
-        assert (np.abs(other.frequencies / mine.frequencies - 1.0) <= noise).all()
+        assert not isinstance(own_answer, Failure)
+        assert (np.abs(other.frequencies / own_answer.frequencies - 1.0) <= noise).all()
     assert noise.max() < 1e-6
-    assert len(rounding(mine, [Failure("refused", "")])) == 0
+    assert len(rounding(own_answer, [Failure("refused", "")])) == 0
 
 
 sizes = st.floats(0.0, 1.0)

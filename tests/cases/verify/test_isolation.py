@@ -82,13 +82,13 @@ def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) 
     assert len(alone) == 4
     for key, verdict in BAD.items():
         path = written(key, folder)
-        found = run(case, path, "southwell-equation")
-        bad = [c for c in found.cells if c.code in ("misdeed", path)]
+        result = run(case, path, "southwell-equation")
+        bad = [c for c in result.cells if c.code in ("misdeed", path)]
         assert {(c.omega > 0, c.verdict) for c in bad} == {(False, verdict), (True, verdict)}, (key, bad)
         assert all(c.reason for c in bad)
-        good = of(found, "southwell-equation")
+        good = of(result, "southwell-equation")
         assert [(c.value, c.verdict) for c in good] == [(c.value, c.verdict) for c in alone]
-        assert summary.status(found) == (1 if verdict == "fail" else 0)
+        assert summary.status(result) == (1 if verdict == "fail" else 0)
 
 
 def test_an_entry_point_that_exits_costs_its_own_cells(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -115,12 +115,12 @@ def test_an_error_of_ours_in_a_column_costs_that_column(case: Case, monkeypatch:
         raise IndexError("list index out of range")
 
     monkeypatch.setattr(columns, "papers_equations", wrong)
-    found = run(case, "yoo-shin")
-    lost = of(found, columns.PAPER)
+    result = run(case, "yoo-shin")
+    lost = of(result, columns.PAPER)
     assert [c.verdict for c in lost] == ["fail", "fail"]
     assert lost[0].reason == "internal error of southwell, not of the code: IndexError: list index out of range"
-    assert {c.verdict for c in of(found, "yoo-shin")} <= {"pass", "known difference"}
-    assert summary.status(found) == 1
+    assert {c.verdict for c in of(result, "yoo-shin")} <= {"pass", "known difference"}
+    assert summary.status(result) == 1
 
 
 def test_a_lost_pool_worker_is_no_interruption(

@@ -44,20 +44,20 @@ def rows(name: str, column: str) -> list:
 @pytest.mark.parametrize("column", [*MECHANISM_CODES, "closed form"])
 @pytest.mark.parametrize("name", library.mechanisms())
 def test_every_code_at_every_speed(name: str, column: str) -> None:
-    found = rows(name, column)
-    if found[0].verdict == "not run":
-        pytest.skip(found[0].reason)
+    result = rows(name, column)
+    if result[0].verdict == "not run":
+        pytest.skip(result[0].reason)
     text = TEXT[name].text
     assert text.compare is not None
-    assert len(found) == 2 * text.compare.modes * len(mechanism.subject(library.mechanism(name)).points)
-    for cell in found:
+    assert len(result) == 2 * text.compare.modes * len(mechanism.subject(library.mechanism(name)).points)
+    for cell in result:
         assert (cell.verdict, cell.role, cell.target, cell.reason) == ("pass", "same discretisation", 1e-8, ""), cell
         assert cell.difference == quantities.difference(cell.quantity, cell.value, cell.reference)
         assert abs(cell.difference) + cell.uncertainty <= cell.target
         assert cell.mac > 1 - 1e-9
-    assert {c.quantity for c in found} == {"frequency", "damping"}
+    assert {c.quantity for c in result} == {"frequency", "damping"}
     families = {"hinged-blade": {"flap", "lag"}, "coleman-feingold": {"X", "Y", "lag0", "lag2"}}
-    assert {c.family for c in found} == families.get(name, {"flap", "pitch"})
+    assert {c.family for c in result} == families.get(name, {"flap", "pitch"})
 
 
 def reference() -> Reference:
@@ -289,8 +289,8 @@ def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
 )
 def test_verify_judges_a_mechanism_by_its_file(capsys, tmp_path: Path, change, status: int, said: str) -> None:
     """The closed form's parameters are stated apart from the mechanism, so that one that is wrong is seen."""
-    found, out = verify(capsys, tmp_path, write(tmp_path, "hinged-blade", *change))
-    assert (found, said in out) == (status, True), out
+    result, out = verify(capsys, tmp_path, write(tmp_path, "hinged-blade", *change))
+    assert (result, said in out) == (status, True), out
 
 
 def test_formulae_of_limiting_blades() -> None:
@@ -301,12 +301,12 @@ def test_formulae_of_limiting_blades() -> None:
     np.testing.assert_allclose(np.diagonal(K) / np.diagonal(M), [49.0, 4.0])
     blade = {"offset": 0.3, "xx": 100.0, "yy": 0.2, "zz": 0.0, "xy": 0.0, "first_x": 50.0, "first_y": 0.0}
     horn = {"horn_x": -0.1, "horn_y": 0.2, "control_spring": 1e12, "control_damper": 0.0}
-    found = blade_formulae.solve("flap-pitch", 30.0, {**blade, **horn, "rod_mass": 0.0, "link_mass": 0.0})
+    solution = blade_formulae.solve("flap-pitch", 30.0, {**blade, **horn, "rod_mass": 0.0, "link_mass": 0.0})
     delta = np.array([1.0, 0.5])  # 0.2 θ = 0.1 β
     K = 900.0 * np.diag([0.3 * 50 + 100, 0.2])
     expected = np.sqrt(delta @ K @ delta / (delta @ np.diag([100.0, 0.2]) @ delta))
-    assert found.values[0].imag == pytest.approx(expected, rel=1e-6)
-    np.testing.assert_allclose(found.shapes[0, 1] / found.shapes[0, 0], 0.5, rtol=1e-6)
+    assert solution.values[0].imag == pytest.approx(expected, rel=1e-6)
+    np.testing.assert_allclose(solution.shapes[0, 1] / solution.shapes[0, 0], 0.5, rtol=1e-6)
 
 
 @pytest.mark.slow
@@ -315,8 +315,8 @@ def test_a_mechanism_is_confirmed_by_independent_groups() -> None:
     for name in library.mechanisms():
         subject = mechanism.subject(library.mechanism(name))
         run = matrix.run([subject], describe(tuple(MECHANISM_CODES)), seeding.Serial(), parts=False)
-        found = {w.name: w.kind for w in witnesses.witnesses(run, name)}
-        assert found["exudyn-loops"] == "Southwell's model"
+        result = {w.name: w.kind for w in witnesses.witnesses(run, name)}
+        assert result["exudyn-loops"] == "Southwell's model"
         if any(not c.version for c in run.cells):
             pytest.skip("not every code is installed")
         assert [[w.name for w in group] for group in witnesses.groups(witnesses.witnesses(run, name))] == [
