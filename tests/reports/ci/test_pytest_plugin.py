@@ -143,8 +143,8 @@ def test_a_function_of_blade_and_speed_alone() -> None:
     case = library.load("wright-flapwise")
 
     def solve(blade, omega):
-        found = modes(blade, omega, 100, 12)
-        return found.frequencies, found.shapes
+        solution = modes(blade, omega, 100, 12)
+        return solution.frequencies, solution.shapes
 
     cells = [c for c in user_solver.run(UserSolver(solve), case, case.variants[0]).cells if c.role == "code"]
     assert [c.verdict for c in cells] == ["pass"] * 21
@@ -156,8 +156,8 @@ def test_printed_numbers_are_held_against_it_too() -> None:
     case = library.load("wright-flapwise")
 
     def solve(blade, omega, elements, count):
-        found: Modes = modes(blade, omega, elements, count)
-        return found.frequencies * (1 + 2e-3), found.shapes
+        result: Modes = modes(blade, omega, elements, count)
+        return result.frequencies * (1 + 2e-3), result.shapes
 
     cells = user_solver.run(UserSolver(solve, target=5e-3), case, case.variants[0]).cells
     assert {c.verdict for c in cells if c.role == "code"} == {"pass"}
