@@ -27,10 +27,10 @@ def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item
     for item in items:
         if getattr(getattr(item, "obj", None), "is_hypothesis_test", False):
             item.add_marker("random")
-    left = [item for item in items if item.get_closest_marker("nightly") and not night]
-    if left:
-        config.hook.pytest_deselected(items=left)
-        items[:] = [item for item in items if item not in set(left)]
+    remainder = [item for item in items if item.get_closest_marker("nightly") and not night]
+    if remainder:
+        config.hook.pytest_deselected(items=remainder)
+        items[:] = [item for item in items if item not in set(remainder)]
     slow = Counter(item.path for item in items if item.get_closest_marker("slow"))
     items.sort(key=lambda item: -slow[item.path])
 

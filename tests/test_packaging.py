@@ -49,12 +49,12 @@ def data_files() -> set[str]:
 
 
 def test_every_folder_that_is_a_package_is_listed_and_no_other() -> None:
-    found = {
+    result = {
         ".".join(("southwell", *path.relative_to(ROOT).parent.parts))
         for path in tracked()
         if path.name == "__init__.py" and path.relative_to(ROOT).parts[0] not in NOT_PACKAGED
     }
-    assert set(SETUPTOOLS["packages"]) == found
+    assert set(SETUPTOOLS["packages"]) == result
 
 
 def test_every_file_beside_the_modules_is_packaged_or_known_not_to_be() -> None:
@@ -75,10 +75,10 @@ def test_version_and_requirements_are_those_of_the_project_everywhere() -> None:
     assert citation["version"] == PROJECT["project"]["version"]
     recipe = (ROOT / "conda" / "meta.yaml").read_text(encoding="utf-8")
     run = recipe[recipe.index("  run:") : recipe.index("test:")]
-    found = {line.strip("- ").replace(" ", "") for line in run.splitlines()[1:] if line.strip()}
+    result = {line.strip("- ").replace(" ", "") for line in run.splitlines()[1:] if line.strip()}
     names = {"matplotlib": "matplotlib-base", "PyYAML": "pyyaml"}
     needed = {re.sub(r"^[\w-]+", lambda m: names.get(m[0], m[0]), d) for d in PROJECT["project"]["dependencies"]}
-    assert found == needed | {"python>=3.11"}
+    assert result == needed | {"python>=3.11"}
 
 
 def test_a_release_is_published_only_after_the_matrix_and_the_wheels() -> None:
@@ -152,13 +152,13 @@ HOME = re.compile(r"(?<![\w.:/])/(?:home|root|tmp|work|Users|mnt|farm)/\w|[A-Z]:
 
 
 def test_no_file_speaks_of_one_machine() -> None:
-    found = []
+    result = []
     for path in tracked():
         text = path.read_text(encoding="utf-8", errors="replace")
-        found += [f"{path.name}:{k}" for k, line in enumerate(text.splitlines(), 1) if HOME.search(line)]
+        result += [f"{path.name}:{k}" for k, line in enumerate(text.splitlines(), 1) if HOME.search(line)]
         if path != ROOT / ".ci" / "run":  # which looks beside the checkout for blades, and does without
-            found += [f"{path.name}: ../ outside" for line in text.splitlines() if re.search(r"\.\./sha[r]ed", line)]
-    assert not found
+            result += [f"{path.name}: ../ outside" for line in text.splitlines() if re.search(r"\.\./sha[r]ed", line)]
+    assert not result
 
 
 def test_the_patterns_of_that_test_find_such_paths() -> None:

@@ -28,15 +28,15 @@ def frequencies(beam, omega, elements, count, stiffened=True):
 
     ``stiffened=False`` omits the stiffness due to the centrifugal force, a mistake that the tests must detect.
     """
-    found = []
+    result = []
     for plane, bending in enumerate((beam.in_plane, beam.out_of_plane)):
         M, K = _matrices(beam, omega, elements, bending, stiffened)
         squares, vectors = eigh(K - (omega**2 * M if plane == 0 else 0), M)
         for square, vector in zip(squares, vectors.T, strict=True):
             if square > 0:
-                found.append((np.sqrt(square), plane, _deflection(vector, elements, beam.length)))
-    found.sort(key=lambda mode: mode[0])
-    return [list(column) for column in zip(*found[:count], strict=True)]
+                result.append((np.sqrt(square), plane, _deflection(vector, elements, beam.length)))
+    result.sort(key=lambda mode: mode[0])
+    return [list(column) for column in zip(*result[:count], strict=True)]
 
 
 def _matrices(beam, omega, elements, bending, stiffened):

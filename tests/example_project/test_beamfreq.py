@@ -11,11 +11,11 @@ def solve(blade: Blade, omega: float, elements: int, count: int, **options):
     """Southwell's x runs along the blade, y lies in the plane of rotation, z out of it."""
     at = sample(blade, np.linspace(0, blade.length, 201))
     beam = Beam(blade.length, blade.hub_radius, at.mass, at.EI_z, at.EI_y)
-    found, planes, deflections = frequencies(beam, omega, elements, count, **options)
-    shapes = np.zeros((len(found), 21, 3))
+    result, planes, deflections = frequencies(beam, omega, elements, count, **options)
+    shapes = np.zeros((len(result), 21, 3))
     for shape, plane, deflection in zip(shapes, planes, deflections, strict=True):
         shape[:, 1 + plane] = deflection
-    return found, shapes
+    return result, shapes
 
 
 def unsupported(blade: Blade) -> str | None:

@@ -40,7 +40,7 @@ def polynomials(path: Path, names: Sequence[str]) -> list[Array]:
     """Coefficients of the mode shapes in a tower or blade file, from the constant upwards, over the fraction of the length."""
     text = path.read_text()
     rows = ([re.search(rf"([-+\d.Ee]+)\s+{name}\({k}\)", text) for k in range(2, 7)] for name in names)
-    return [np.array([0.0, 0.0, *(float(found[1]) for found in row if found)]) for row in rows]
+    return [np.array([0.0, 0.0, *(float(result[1]) for result in row if result)]) for row in rows]
 
 
 def frequencies(turbine: Turbine, tower_file: Path, blade_file: Path, gravity: float) -> tuple[Array, tuple[str, ...]]:

@@ -26,10 +26,10 @@ def real(name: str) -> Path:
 def assert_same(a: Blade, b: Blade, rtol: float = 1e-14) -> None:
     for field in FIELDS:
         x, y = np.array(getattr(a, field)), np.array(getattr(b, field))
-        there = np.isfinite(x)
-        np.testing.assert_array_equal(there, np.isfinite(y), err_msg=field)
-        scale = np.abs(x[there]).max(initial=0.0)
-        np.testing.assert_allclose(x[there], y[there], rtol=rtol, atol=rtol * scale, err_msg=field)
+        elsewhere = np.isfinite(x)
+        np.testing.assert_array_equal(elsewhere, np.isfinite(y), err_msg=field)
+        scale = np.abs(x[elsewhere]).max(initial=0.0)
+        np.testing.assert_allclose(x[elsewhere], y[elsewhere], rtol=rtol, atol=rtol * scale, err_msg=field)
 
 
 ROWS, COLUMNS = np.triu_indices(6)

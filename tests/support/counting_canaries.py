@@ -59,9 +59,9 @@ def canaries() -> list[str]:
     """Wrong counts of the canaries; empty if all are correct."""
     wrong = []
     for what, (run, expected) in COUNTS.items():
-        found = len(groups(witnesses.witnesses(run, CASE)))
-        if found != expected:
-            wrong.append(f"groups: {what}: {found} counted, not {expected}")
+        result = len(groups(witnesses.witnesses(run, CASE)))
+        if result != expected:
+            wrong.append(f"groups: {what}: {result} counted, not {expected}")
     alone = short(_run(ONE, required=2))
     if [(s.groups, s.required) for s in alone] != [(1, 2)] or short(_run(ONE, TWO, required=2)):
         wrong.append("groups: one of two required is not reported as too few")

@@ -162,10 +162,10 @@ def _lines(c: bytes, rng: random.Random) -> bytes:
 
 def _replace(pattern: re.Pattern[bytes]) -> Callable[[bytes, random.Random], bytes]:
     def change(c: bytes, rng: random.Random) -> bytes:
-        found = list(pattern.finditer(c))
-        if not found:
+        result = list(pattern.finditer(c))
+        if not result:
             return c
-        one = rng.choice(found)
+        one = rng.choice(result)
         return c[: one.start()] + rng.choice(HOSTILE).encode() + c[one.end() :]
 
     return change
@@ -312,8 +312,8 @@ def take(kind: str, path: Path, rng: random.Random) -> None:
             frequencies = np.abs(read.solve(2).values)
             assert np.isfinite(frequencies).all()
     elif kind.startswith("condense"):
-        found = condensing.condense(path)
-        for segment in found.blade.segments:
+        condensation = condensing.condense(path)
+        for segment in condensation.blade.segments:
             assert np.isfinite(segment.stiffness).all()
             assert segment.inertia[0, 0] > 0
     elif kind == "segments":
@@ -496,15 +496,15 @@ def run(count: int, seed: int, first: int = 0) -> list[dict]:
                 ended = f"process ended with {done.returncode}"
             except subprocess.TimeoutExpired:
                 ended = "hang"
-            found = [json.loads(line) for line in progress.read_bytes().splitlines()] if progress.exists() else []
-        new = [row for row in found if "number" in row]
-        if not found:
+            result = [json.loads(line) for line in progress.read_bytes().splitlines()] if progress.exists() else []
+        new = [row for row in result if "number" in row]
+        if not result:
             raise RuntimeError(f"no trial was begun: {ended}")
-        if "begins" in found[-1]:
-            new.append({"number": found[-1]["begins"], "kind": "?", "wrong": ended, "seconds": 0.0})
-            first = found[-1]["begins"] + 1
+        if "begins" in result[-1]:
+            new.append({"number": result[-1]["begins"], "kind": "?", "wrong": ended, "seconds": 0.0})
+            first = result[-1]["begins"] + 1
         else:
-            first = found[-1]["number"] + 1
+            first = result[-1]["number"] + 1
         rows += new
         for row in (r for r in new if r["wrong"]):
             print(f"--- seed {seed}, trial {row['number']}, {row['kind']}\n{row['wrong']}")

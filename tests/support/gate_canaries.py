@@ -45,12 +45,12 @@ AFTER: dict[str, Run] = {
 def canaries() -> list[str]:
     """Expected reports of history and gate that are missing; empty if all are correct."""
     wrong = []
-    found = _compared(BEFORE, BEFORE)
-    if found is None or not found.passed(strict=True) or not found.after.cells:
+    comparison = _compared(BEFORE, BEFORE)
+    if comparison is None or not comparison.passed(strict=True) or not comparison.after.cells:
         wrong.append("gate: a run against itself does not pass")
     for what, after in AFTER.items():
-        found = _compared(BEFORE, after)
-        if found is None or found.passed(strict=True):
+        comparison = _compared(BEFORE, after)
+        if comparison is None or comparison.passed(strict=True):
             wrong.append(f"gate: not listed: {what}")
     return wrong
 
@@ -73,8 +73,8 @@ def _entry(**changes: Any) -> Any:
 
     def make(right: Any) -> Any:
         def wrong(*args: Any) -> Entry:
-            found = right(*args)
-            return replace(found, cells=tuple(_point(p, **changes) for p in found.cells))
+            solution = right(*args)
+            return replace(solution, cells=tuple(_point(p, **changes) for p in solution.cells))
 
         return wrong
 
@@ -88,14 +88,14 @@ def _point(point: Any, **changes: Any) -> Any:
 
 def _rounded(right: Any) -> Any:
     def wrong(*args: Any) -> Entry:
-        found = right(*args)
-        return replace(found, cells=tuple(_point(p, value=p.value and round(p.value, 3)) for p in found.cells))
+        solution = right(*args)
+        return replace(solution, cells=tuple(_point(p, value=p.value and round(p.value, 3)) for p in solution.cells))
 
     return wrong
 
 
 def _first_only(right: Any) -> Any:
-    return lambda *args: replace(found := right(*args), cells=found.cells[:1])
+    return lambda *args: replace(solution := right(*args), cells=solution.cells[:1])
 
 
 def _never(right: Any) -> Any:

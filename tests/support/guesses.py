@@ -42,14 +42,14 @@ def assert_same(tree: Tree, guess: Mapping[str, float] | None, expected: State, 
     drifts = equilibrium.null_motions(linear)[0].shape[1] > 0
     for k in chosen:
         try:
-            found = STEADY(tree, perturbed(tree, guess or {}, k))
+            solution = STEADY(tree, perturbed(tree, guess or {}, k))
         except MechanismError as error:  # nothing near this guess
             if "without a guess, a steady state was found" not in str(error):
                 raise
-            found = STEADY(tree)
-        again = about(tree, found, linear.names)
+            solution = STEADY(tree)
+        again = about(tree, solution, linear.names)
         stiff = np.abs(again.K - linear.K).max(initial=0.0) <= 1e-8 * np.abs(linear.K).max(initial=0.0)
-        alike = drifts and np.allclose(_shape(found), _shape(expected), rtol=1e-8, atol=0.0)
+        alike = drifts and np.allclose(_shape(solution), _shape(expected), rtol=1e-8, atol=0.0)
         assert stiff or alike, f"guess {k}: another state"
 
 

@@ -93,21 +93,21 @@ def kill(child: subprocess.Popen[str], when: Callable[[], bool]) -> bool:
 def running(folder: Path) -> list[str]:
     """Processes that runs in ``folder`` have started and that are still there, a few seconds for them to go."""
     until = monotonic() + 20
-    while (found := _running(folder)) and monotonic() < until:
+    while (result := _running(folder)) and monotonic() < until:
         sleep(0.05)
-    return found
+    return result
 
 
 def _running(folder: Path) -> list[str]:
-    found = []
+    result = []
     for entry in Path("/proc").glob("[0-9]*/environ"):
         try:
             text = entry.read_bytes()
         except OSError:
             continue
         if f"SOUTHWELL_TEST={folder}\0".encode() in text:
-            found.append(entry.parent.name)
-    return found
+            result.append(entry.parent.name)
+    return result
 
 
 def asked(folder: Path) -> list[str]:
