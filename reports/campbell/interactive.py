@@ -25,6 +25,9 @@ PHASES = 24
 AMPLITUDE, HALF_CHORD = 0.12, 0.02
 """Largest drawn motion, and half the drawn chord, as fractions of the blade's length."""
 
+MARGIN = {"l": 50, "r": 12}
+"""Space beside the figures, pixels: small, for telephones."""
+
 POLICY = "default-src 'none'; script-src 'unsafe-inline'; style-src 'unsafe-inline'; img-src data: blob:"
 """Content security policy of the page: nothing is fetched."""
 
@@ -76,7 +79,9 @@ def lines(diagram: Campbell, units: Units, confirmed: Mapping[int, str] | None =
         low, high = (omega * units.speeds for omega in diagram.request.operating)
         figure.add_vrect(x0=low, x1=high, fillcolor=MUTED, opacity=0.12, line_width=0, annotation_text="operating")
     figure.update_layout(
-        title=f"{escape(diagram.blade.name)}: natural frequencies versus rotor speed",
+        title=f"{escape(diagram.blade.name)}:<br>natural frequencies versus rotor speed",
+        legend={"orientation": "h", "y": -0.15},
+        margin=MARGIN,
         xaxis_title=units.speed_label,
         yaxis={"title": units.frequency_label, "range": [0.0, highest]},
         template="plotly_white",
@@ -145,8 +150,8 @@ def shapes(diagram: Campbell, k: int, units: Units) -> Any:
             {
                 "type": "buttons",
                 "direction": "left",
-                "x": 0.35,
-                "xanchor": "left",
+                "x": 1.0,
+                "xanchor": "right",
                 "y": 1.08,
                 "buttons": [
                     {"label": "play", "method": "animate", "args": [loop, play]},
@@ -155,6 +160,7 @@ def shapes(diagram: Campbell, k: int, units: Units) -> Any:
             },
         ],
         template="plotly_white",
+        margin=MARGIN,
         height=620,
     )
     return figure

@@ -26,8 +26,10 @@ ANSWER = {"Yes": "pass", "No": "fail", "Open": "inconclusive"}
 FOLD = re.compile(r"<details(?: open)?><summary>([^<>]*)</summary>|</details>")
 """The only HTML block in a report; anything else that looks like HTML is text."""
 
-TOGETHER = re.compile(rf"(?<=\d) (?=%)|(?<=[±{SIGNS}]) (?=[+−\d]|<\d|known)")
-"""Spaces at which a line must not break: in front of a percent sign, and after a verdict's sign or ±."""
+TOGETHER = re.compile(
+    rf"(?<=\d) (?=%|rad/s|rpm|Hz|[{SIGNS}](?!\w))|(?<=γ) (?==)|(?<=γ =) (?=\d)|(?<=[±{SIGNS}]) (?=[+−\d]|<\d|known)"
+)
+"""Spaces at which a line must not break: between a number and its unit or sign, and after a verdict's sign or ±."""
 
 BREAK = "<br>"
 

@@ -6,11 +6,17 @@ from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import cast
 
+from matplotlib import get_data_path
+from matplotlib.ft2font import FT2Font
+
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...references.protocol.interface import extra
 from ..shared import colours
-from . import columns, document, print_nodes
+from . import document, print_nodes
+
+FONTS = Path(get_data_path(), "fonts", "ttf")
+"""The fonts that Matplotlib brings along."""
 
 
 class PdfError(CaseError):
@@ -62,6 +68,7 @@ def render(text: str, folder: Path) -> bytes:
         "nodes": print_nodes.nodes(read, folder),
         "width": print_nodes.WIDTH,
         "padding": print_nodes.PADDING,
+        "size": print_nodes.SIZE,
         "colours": {
             "ink": colours.INK,
             "faint": colours.FAINT,
@@ -72,7 +79,7 @@ def render(text: str, folder: Path) -> bytes:
         },
     }
     sent = json.dumps(data, ensure_ascii=False)
-    fonts = typst.Fonts(not columns.covered(sent), False, [str(columns.FONTS)])
+    fonts = typst.Fonts(not covered(sent), False, [str(FONTS)])
     layout = files(__package__ or "").joinpath("print.typ").read_bytes()
     with TemporaryDirectory() as empty:
         try:
@@ -82,3 +89,9 @@ def render(text: str, folder: Path) -> bytes:
             raise PdfError(
                 f"--pdf: the report in {folder}: Typst: {error.message}; give --html and print that page from a browser"
             ) from error
+
+
+def covered(text: str) -> bool:
+    """Whether DejaVu Sans has a glyph for every character of ``text``."""
+    glyphs = FT2Font(str(FONTS / "DejaVuSans.ttf")).get_charmap()
+    return {ord(sign) for sign in set(text) if sign.isprintable()} <= set(glyphs)

@@ -1,7 +1,7 @@
 """A report as nested data for ``print.typ``, which lays it out: text is never part of Typst's code."""
 
 import re
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator
 from functools import partial
 from html import unescape
 from pathlib import Path
@@ -9,7 +9,6 @@ from typing import Any
 
 from markdown_it.tree import SyntaxTreeNode
 
-from . import columns
 from .document import FOLD, Document, figure
 
 Node = dict[str, Any]
@@ -20,8 +19,8 @@ WIDTH = (297 - 24) / 25.4 * 72
 SIZE, PADDING = 6.6, 4.5
 """Font size of tables, and empty space of their cells, left and right together, points."""
 
-LINES = 40
-"""Rows that may have more lines than this may be broken, since they could be higher than a page."""
+LONG = 400
+"""Rows with more characters than this in a cell may be broken, since they could be higher than a page."""
 
 LONGEST = {"regular": 40, "bold": 40, "mono": 110}
 """Longest words in characters; longer ones may be broken anywhere. Half the width of the page; of code, three quarters."""
@@ -113,35 +112,19 @@ def _figure(node: SyntaxTreeNode, svg: str) -> Node:
 
 
 def _table(table: SyntaxTreeNode, inline: Inline) -> Node:
-    rows = [row for part in table.children for row in part.children]
-    cells = [[_text(cell, inline) for cell in row.children] for row in rows]
-    pieces = [
-        [list(_pieces(text, _face(cell))) for cell, text in zip(row.children, texts, strict=True)]
-        for row, texts in zip(rows, cells, strict=True)
+    head, *rows = (row.children for part in table.children for row in part.children)
+    cells = [
+        {"verdict": cell.attrs.get("class", ""), "long": long, "body": _text(cell, inline)}
+        for row in rows
+        for long in [any(len(words(cell)) > LONG for cell in row)]
+        for cell in row
     ]
-    across, size = columns.widths(pieces, SIZE, PADDING, WIDTH)
-    body = [
-        {"verdict": cell.attrs.get("class", ""), "high": high, "body": text}
-        for row, texts, measured in zip(rows[1:], cells[1:], pieces[1:], strict=True)
-        for high in [columns.lines(measured, across, size, PADDING) > LINES]
-        for cell, text in zip(row.children, texts, strict=True)
-    ]
-    return {"kind": "table", "size": size, "widths": across, "head": cells[0], "cells": body}
+    return {"kind": "table", "head": [_text(cell, inline) for cell in head], "cells": cells}
 
 
-def _face(cell: SyntaxTreeNode) -> str:
-    return "bold" if cell.type == "th" or cell.attrs.get("class") == "fail" else "regular"
-
-
-def _pieces(nodes: Sequence[Node], face: str) -> Iterator[tuple[str, str]]:
-    """The text of a cell for its measurement."""
-    for node in nodes:
-        if node["kind"] == "break":
-            yield "\n", face
-        elif "text" in node:
-            yield node["text"], "mono" if node["kind"] == "code_inline" else face
-        else:
-            yield from _pieces(node.get("body", ()), "bold" if node["kind"] == "strong" else face)
+def words(cell: SyntaxTreeNode) -> str:
+    """The text of a table cell."""
+    return "".join(node.content for node in cell.walk() if not node.children)
 
 
 def _broken(text: str, face: str) -> str:

@@ -3,6 +3,7 @@
 import re
 import sys
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -12,7 +13,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.store.results_file import write
 from southwell.reports.cli import arguments
 from southwell.reports.cli import report as command
-from southwell.reports.documents import columns, document, pdf, print_nodes
+from southwell.reports.documents import document, pdf, print_nodes
 from southwell.reports.shared import colours
 from southwell.reports.verification import report as matrix_report
 
@@ -20,6 +21,10 @@ from ...support import samples
 from ...support.printed import annotations, missing, read, rendered, words
 
 SVG = '<svg xmlns="http://www.w3.org/2000/svg" width="{0}pt" height="{1}pt"><text x="5" y="20">{2}</text></svg>'
+
+
+MARGIN = 12 / 25.4 * 72
+"""Of the page, points."""
 
 
 @pytest.mark.slow
@@ -121,68 +126,75 @@ def test_figures_are_drawn_at_their_size_wherever_they_stand(tmp_path: Path) -> 
     assert 0.9 < scales["y"] * 3000 / ((210 - 24) / 25.4 * 72) < 1
 
 
+def places(text: str, folder: Path) -> dict[str, tuple[float, float]]:
+    """Where each piece of text on the first page begins, from the left edge, and its font size, points."""
+    out: dict[str, tuple[float, float]] = {}
+
+    def note(piece: str, cm: list[float], tm: list[float], font: object, size: float) -> None:
+        if piece.strip():
+            out.setdefault(piece.strip(), (cm[4] + tm[4], size))
+
+    rendered(text, folder).pages[0].extract_text(visitor_text=note)
+    return out
+
+
+def rows(*cells: list[str]) -> str:
+    head, *others = (f"| {' | '.join(row)} |\n" for row in cells)
+    return f"{head}{'|:--' * len(cells[0])}|\n{''.join(others)}"
+
+
 def test_a_table_stays_on_its_pages(tmp_path: Path) -> None:
-    names = " | ".join(f"column-{k}" for k in range(30))
-    cells = " | ".join(["✘ <0.0001 % ± <0.0001 %"] * 30)
-    digests = f"{'0123456789abcdef' * 8} | {'fedcba9876543210' * 8}"
-    table = {}
-    for head, row in ((names, cells), ("a | b", digests)):
-        text = f"| {head} |\n{'|:--' * (head.count('|') + 1)}|\n| {row} |\n"
-        assert missing(text, rendered(text, tmp_path)) == []
-        table = print_nodes.nodes(document.parse(text), tmp_path)[0]
-        assert sum(table["widths"]) <= print_nodes.WIDTH + 1e-6
-    assert table["size"] == print_nodes.SIZE, "overlong words are broken before the text is made smaller"
+    heads = [f"column{k}" for k in range(30)]
+    text = rows(heads, ["✘ <0.0001 % ± <0.0001 %"] * 30)
+    assert missing(text, rendered(text, tmp_path)) == []
+    printed = places(text, tmp_path)
+    starts = [printed[head][0] for head in heads]
+    steps = [b - a for a, b in pairwise(starts)]
+    assert min(steps) > 0
+    assert starts[-1] - print_nodes.PADDING / 2 + min(steps) <= MARGIN + print_nodes.WIDTH + 0.1
+    assert printed["column0"][1] < print_nodes.SIZE, "the text is smaller if the longest words do not fit side by side"
+    digests = places(rows(["a", "b"], ["0123456789abcdef" * 8, "fedcba9876543210" * 8]), tmp_path)
+    assert digests["b"] == pytest.approx((MARGIN + print_nodes.WIDTH / 2, print_nodes.SIZE), abs=5), (
+        "overlong words break"
+    )
+
+
+def test_columns_share_the_page_as_in_css(tmp_path: Path) -> None:
+    (a, _), (b, _) = (places(rows(["a", "b"], ["mm", "m " * 400]), tmp_path)[head] for head in "ab")
+    assert b - a == pytest.approx(17.5, abs=1)
+    (a, _), (b, _) = (places(rows(["a", "b"], ["m m m", "x"]), tmp_path)[head] for head in "ab")
+    assert b - a == pytest.approx(28, abs=3), "as wide as the longest line if all fit"
+
+
+def test_a_cell_in_bold_is_measured_in_bold(tmp_path: Path) -> None:
+    bold, regular = (places(rows(["a", "b"], [f"{sign} wide word", "x"]), tmp_path)["b"][0] for sign in "✘✔")
+    assert bold - MARGIN > 1.05 * (regular - MARGIN)
 
 
 def test_a_row_is_broken_only_if_it_may_be_higher_than_a_page(tmp_path: Path) -> None:
-    lines = "\n\n".join(["line"] * 24)
+    lines = "\n\n".join(["line"] * 25)
     pages, heights = {}, []
 
     def note(text: str, cm: list[float], *_: object) -> None:
         if "word" in text:
             heights.append(cm[5])
 
-    for count in (600, 4000):
-        reader = rendered(f"{lines}\n\n| head | b |\n|:--|:--|\n| x | {'word ' * count} |\n", tmp_path)
+    for count, word in ((40, "word<br>"), (4000, "word ")):
+        reader = rendered(f"{lines}\n\n| head | b |\n|:--|:--|\n| x | {word * count} |\n", tmp_path)
         texts = [page.extract_text() for page in reader.pages]
         pages[count] = [text.count("word") for text in texts]
         assert [text.count("head") for text in texts] == [int(n > 0) for n in pages[count]]
         for page in reader.pages:
             page.extract_text(visitor_text=note)
-    assert pages[600] == [0, 600]
+    assert pages[40] == [0, 40]
     assert sum(pages[4000]) == 4000
     assert min(heights) > 12 / 25.4 * 72
 
 
-def test_a_cell_in_bold_is_measured_in_bold(tmp_path: Path) -> None:
-    def widths(sign: str) -> list[float]:
-        text = f"| a | b |\n|:--|:--|\n| {sign} wide word | plain |\n"
-        return print_nodes.nodes(document.parse(text), tmp_path)[0]["widths"]
-
-    assert widths("✘")[0] > 1.05 * widths("✔")[0]
-    assert widths("✘")[1] == widths("✔")[1]
-
-
-def test_columns_share_the_page_as_in_css() -> None:
-    def cells(*texts: str) -> list[list[tuple[str, str]]]:
-        return [[(text, "regular")] for text in texts]
-
-    m = columns.widths([cells("m")], 10, 0, 500)[0][0]
-    assert columns.widths([cells("mmmm", "m m\nm"), cells("m", "")], 10, 2, 500)[0][0] == pytest.approx(
-        2 + 4 * m, rel=0.1
-    )
-    short, long = columns.widths([cells("mm", "m " * 100)], 10, 0, 300)[0]
-    assert short == pytest.approx(2 * m, rel=0.1)
-    assert short + long == pytest.approx(300)
-    (first, second), size = columns.widths([cells("m" * 40, "m" * 40)], 10, 4, 300)
-    assert first == second == pytest.approx(150)
-    assert 40 * m * size / 10 == pytest.approx(146, rel=0.03)
-
-
 def test_every_sign_of_a_report_has_a_glyph(tmp_path: Path) -> None:
     text = matrix_report.write(samples.run(), tmp_path).read_text(encoding="utf-8")
-    assert columns.covered(text + "".join(colours.NAMES) + "ω₀² αγκνρφ ≤ ≥ − · × ½ ° … x⁶ Ω")
-    assert not columns.covered("中")
+    assert pdf.covered(text + "".join(colours.NAMES) + "ω₀² αγκνρφ ≤ ≥ − · × ½ ° … x⁶ Ω")
+    assert not pdf.covered("中")
     reader = rendered(text, tmp_path)
     fonts = {f.get_object()["/BaseFont"] for page in reader.pages for f in page["/Resources"]["/Font"].values()}
     assert all("+DejaVuSans" in font for font in fonts), "the same on every machine"
