@@ -48,7 +48,7 @@ class ExudynTurbine(TurbineAdapter):
     distribution = ex.DISTRIBUTION
 
     def unsupported_turbine(self, turbine: Turbine) -> str | None:
-        """A reason as ``turbine_tree.outside``, or if a beam is rigid in bending."""
+        """A reason if ``turbine_tree.outside`` gives one, or if a beam is rigid in bending."""
         tower, blade = turbine.tower, turbine.blade
         if reason := turbine_tree.outside(turbine):
             return reason

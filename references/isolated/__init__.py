@@ -27,7 +27,7 @@ class EnvironmentMissingError(RuntimeError):
 
 @dataclass(frozen=True)
 class Environment:
-    """One code's environment.
+    """The isolated environment of one code.
 
     Attributes:
         name: name of the code.
@@ -63,13 +63,13 @@ class Environment:
 
     @property
     def lacking(self) -> str:
-        """What installs the libraries that the system does not have; empty if it has all."""
+        """Command that installs the missing libraries of the system; empty if none is missing."""
         absent = ", ".join(f"lib{name}" for name in self.libraries if find_library(name) is None)
         return f"apt-get install {' '.join(self.packages)} (not found: {absent})" if absent else ""
 
     @property
     def hint(self) -> str:
-        """How to install what is missing."""
+        """Command that installs the missing part."""
         return (self.created and self.lacking) or f"southwell codes install {self.name}"
 
     def version(self) -> str | None:

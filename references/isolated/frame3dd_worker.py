@@ -63,7 +63,11 @@ def solve(request):
 
 
 def modes(frame, count):
-    """The answer; RuntimeError if no reliable one is found."""
+    """The answer.
+
+    Raises:
+        RuntimeError: neither method finds all modes.
+    """
     for method, asked in (*((JACOBI, count + more) for more in range(MORE)), (STODOLA, count)):
         try:
             modal = run(frame, asked, method)
@@ -80,6 +84,10 @@ def modes(frame, count):
 
 
 def run(frame, count, method):
-    """The modes by one of Frame3DD's methods; RuntimeError if it fails."""
+    """The modes by one of Frame3DD's methods.
+
+    Raises:
+        RuntimeError: the method fails.
+    """
     frame.enableDynamics(count, method, CONSISTENT, TOLERANCE, 0.0)
     return frame.run()[-1]

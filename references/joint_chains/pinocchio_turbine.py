@@ -60,7 +60,7 @@ class PinocchioTurbine(TurbineAdapter):
     distribution = "pin"
 
     def unsupported_turbine(self, turbine: Turbine) -> str | None:
-        """A reason as ``turbine_tree.outside``."""
+        """A reason if ``turbine_tree.outside`` gives one."""
         return turbine_tree.outside(turbine)
 
     def turbine_modes(self, turbine: Turbine, omega: float, elements: int, count: int) -> TurbineModes:

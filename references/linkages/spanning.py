@@ -31,7 +31,7 @@ AXES = {
 
 @dataclass(frozen=True)
 class Link:
-    """One coordinate.
+    """A link of the tree: the body that one coordinate moves relative to its parent.
 
     Attributes:
         name: of the coordinate, e.g. ``flap.rz``.
@@ -50,7 +50,7 @@ class Link:
 
 @dataclass(frozen=True)
 class Spanning:
-    """The tree.
+    """A spanning tree, and the joints that close its loops.
 
     Attributes:
         links: (n) one per coordinate, each followed by its subtree: Pinocchio's matrices are wrong otherwise.

@@ -32,12 +32,12 @@ class Units:
 
     @property
     def energy(self) -> float:
-        """J."""
+        """Unit of energy, J."""
         return self.mass * self.length**2 / self.time**2
 
     @property
     def twist(self) -> Array:
-        """(6,) of a small displacement: length, and 1 rad."""
+        """(6,) units of a small displacement: length, and 1 rad."""
         return np.repeat([self.length, 1.0], 3)
 
 

@@ -83,7 +83,7 @@ def reply(line: bytes, number: int) -> dict[str, Any]:
     except (ValueError, RecursionError):
         data = None
     if not isinstance(data, dict) or data.pop("run", None) != number:
-        raise NonsenseError(f"not an answer: {_quoted(line)}: does the code write to the pipe for answers?")
+        raise NonsenseError(f"not an answer: {_quoted(line)}; the code must not write to the pipe for answers")
     return data
 
 

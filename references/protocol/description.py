@@ -89,7 +89,7 @@ class Description:
 
     @property
     def shares(self) -> SharedWithCore:
-        """What it shares with core."""
+        """What the code shares with core."""
         return shares(self.independence)
 
 

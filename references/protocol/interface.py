@@ -1,7 +1,7 @@
 """The interface of a code: the base classes of every adapter, for blades and for mechanisms.
 
-An adapter declares class attributes and implements ``unsupported`` and ``modes``. The base class adds the version and the
-refusal. Rules for every adapter:
+An adapter declares class attributes and implements ``unsupported`` and ``modes``. The base class finds the installed
+version and rejects unsupported problems. Rules for every adapter:
 
 * it represents every property of a blade, or ``unsupported`` returns the reason why it cannot; no property is ignored;
 * ``effects`` declares the effects it lacks by construction, and core is then compared without them;
@@ -150,7 +150,7 @@ class Deck:
 
 
 class BladeAdapter(Adapter):
-    """A source of a blade's modes.
+    """Base class of adapters that compute a blade's modes.
 
     Attributes:
         levels: refinements, coarse to fine (elements, or terms); each at least 1.4 times the one before.
@@ -186,7 +186,7 @@ class BladeAdapter(Adapter):
         """
 
     def solve(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
-        """The modes, or a refusal; arguments as for ``modes``.
+        """Check that the blade is supported, and compute its modes; arguments as for ``modes``.
 
         Raises:
             CodeError: unsupported blade, no steady state, or no convergence.
@@ -196,7 +196,7 @@ class BladeAdapter(Adapter):
         return self.modes(blade, omega, elements, count)
 
     def with_deck(self, deck: Deck) -> "BladeAdapter":
-        """The adapter that solves the blade of a deck, which the code reads itself, in place of a described one."""
+        """Return an adapter that solves the blade of a deck, which the code reads itself."""
         raise CodeError("this code reads no files")
 
     def fingerprint(self, blade: Blade, elements: int) -> Fingerprint | None:
@@ -245,7 +245,7 @@ class MechanismModes:
 
 
 class MechanismAdapter(Adapter):
-    """A source of a mechanism's modes. A code may be a ``BladeAdapter`` as well."""
+    """Base class of adapters that compute a mechanism's modes. A code may be a ``BladeAdapter`` as well."""
 
     @abstractmethod
     def unsupported_mechanism(self, mechanism: "Mechanism") -> str | None:
@@ -260,7 +260,7 @@ class MechanismAdapter(Adapter):
         """
 
     def solve_mechanism(self, mechanism: "Mechanism", guess: Mapping[str, float]) -> MechanismModes:
-        """The modes, or a refusal; arguments as for ``mechanism_modes``.
+        """Check that the mechanism is supported, and compute its modes; arguments as for ``mechanism_modes``.
 
         Raises:
             CodeError: unsupported mechanism, no steady state, or no convergence.

@@ -90,7 +90,7 @@ def resident(pids: list[int]) -> int:
 
 @dataclass(frozen=True)
 class Output:
-    """What a spawned process wrote: its lines, the last bytes of standard error, its exit code, and why it was stopped."""
+    """Output of a spawned process: its lines, the last bytes of standard error, its exit code, and why it was stopped."""
 
     lines: list[bytes]
     stderr: bytes
@@ -117,8 +117,8 @@ def spawned(
         time_limit: number of lines so far → seconds until the next one.
         stop_reason: process ID → why it must be stopped; called every ``poll_interval`` seconds.
         longest_line: largest size of a line, bytes.
-        kept: number of last bytes of standard error that are kept.
-        poll_interval: s.
+        kept: number of last bytes of standard error that are returned.
+        poll_interval: time between two calls of ``stop_reason``, s.
     """
     one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
     child = subprocess.Popen(

@@ -63,7 +63,7 @@ class Failure:
         kind: ``crashed``, ``timed out``, ``nonsense`` (an invalid answer), ``refused`` (the code reports that it
             could not solve the problem), ``not installed``, ``unsupported`` (the code declines the blade or mechanism),
             ``unknown`` (no such code), ``internal`` (an error of this program, not of the code), ``no reference`` (core has
-            no answer with which one could be compared).
+            no answer for comparison).
         reason: one line, for tables.
     """
 
@@ -92,7 +92,7 @@ def converse(module: str, request: bytes, expected: int, limits: Limits) -> tupl
 
 
 def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
-    """The same where processes cannot be forked."""
+    """``converse`` where processes cannot be forked."""
     output = portable.spawned(
         module,
         request,
@@ -113,7 +113,7 @@ def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tupl
 
 
 def _too_large(used: int, limits: Limits) -> str:
-    """Why a process is stopped that uses more memory than its limit; empty below it."""
+    """The reason to stop a process that uses more memory than its limit; empty if it does not."""
     if used <= limits.memory:
         return ""
     return f"stopped: {used / 2**30:.3g} GiB of memory: the limit is {limits.memory / 2**30:g} GiB"

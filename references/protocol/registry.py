@@ -28,7 +28,7 @@ class Address(TypedDict):
     folder: str | None
 
 
-ADVICE = "is it module:attribute, and installed or in this folder?"
+ADVICE = "give module:attribute of a module that is installed or in this folder"
 
 
 class UnknownCodeError(ValueError):

@@ -47,7 +47,7 @@ class TurbineModes:
 
 
 class TurbineAdapter(Adapter):
-    """A source of a turbine's modes.
+    """Base class of adapters that compute a turbine's modes.
 
     Attributes:
         levels: refinements, coarse to fine: elements of each blade; at least 1.4 times the one before.
@@ -72,7 +72,7 @@ class TurbineAdapter(Adapter):
         """
 
     def solve_turbine(self, turbine: "Turbine", omega: float, elements: int, count: int) -> TurbineModes:
-        """The modes, or a refusal; arguments as for ``turbine_modes``.
+        """Check that the turbine is supported, and compute its modes; arguments as for ``turbine_modes``.
 
         Raises:
             CodeError: unsupported turbine, no steady state, or no convergence.

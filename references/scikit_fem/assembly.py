@@ -5,7 +5,7 @@ from typing import Any
 
 
 def skfem() -> Any:
-    """The package; adapters are imported where it is not installed."""
+    """Import scikit-fem; adapters must be importable where it is not installed."""
     import skfem
 
     return skfem

@@ -173,7 +173,7 @@ class Part:
 
 @cache_last
 def _mesh(blade: Blade, elements: int) -> tuple[Any, list[Part], list[tuple[Any, Any]]]:
-    """What is the same at every speed.
+    """The mesh, which does not depend on the speed.
 
     Returns:
         The basis; the parts; for each field, its coordinates, and the matrix that gives the field at the common stations.

@@ -97,7 +97,7 @@ class Chain:
 
 
 def outside(turbine: Turbine) -> str | None:
-    """What of a turbine cannot be placed here: a bent, twisted or sprung tower, blades on hinges or with kinks; or None."""
+    """The reason why a turbine is not supported: a bent, twisted or sprung tower, blades on hinges or with kinks; or None."""
     tower, blade = turbine.tower, turbine.blade
     if turbine.support.springs or turbine.support.soil is not None:
         return "springs along the tower"
