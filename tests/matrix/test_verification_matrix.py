@@ -11,9 +11,11 @@ import pytest
 
 from southwell.cases.faults.table import BY_NAME, FAST
 from southwell.cases.input import library
+from southwell.cases.judge import witnesses
 from southwell.cases.judge.results import Cell, Run
+from southwell.cases.plan import mechanism
 from southwell.cases.store import results_file
-from southwell.tests.support.codes import BLADE_CODES
+from southwell.tests.support.codes import BLADE_CODES, MECHANISM_CODES
 
 from ..support.capabilities import BLADES, CODES, TABLES, allowed, solves
 
@@ -124,6 +126,27 @@ def test_the_surrogate_rises_as_the_papers_blade_does(run: Run) -> None:
     assert rest / (2 * np.pi) == pytest.approx(1.06, abs=0.01)
     assert twenty / rest - 1.0 == pytest.approx(0.08, abs=0.005)
     assert thirty / rest - 1.0 == pytest.approx(0.165, abs=0.01)
+
+
+@needs_run
+@pytest.mark.parametrize("name", library.mechanisms())
+def test_every_code_agrees_on_a_mechanism(run: Run, name: str) -> None:
+    """Exudyn is given core's spanning tree, and is no group; Pinocchio reads the mechanism itself."""
+    cells = [cell for cell in run.cells if cell.case == name]
+    assert {cell.code for cell in cells} == {*MECHANISM_CODES, "closed form"}
+    if any(cell.verdict == "not run" for cell in cells):
+        pytest.skip("not every code is installed")
+    subject = mechanism.subject(library.mechanism(name))
+    assert len(cells) == subject.cells * len(subject.points) * (len(MECHANISM_CODES) + 1)
+    families = {"hinged-blade": {"flap", "lag"}, "coleman-feingold": {"X", "Y", "lag0", "lag2"}}
+    assert {cell.family for cell in cells} == families.get(name, {"flap", "pitch"})
+    for cell in cells:
+        assert (cell.verdict, cell.role, cell.target, cell.reason) == ("pass", "same discretisation", 1e-8, ""), cell
+        assert cell.mac
+        assert cell.mac > 1 - 1e-9
+    standing = witnesses.witnesses(run, name)
+    assert {w.name: w.kind for w in standing}["exudyn-loops"] == "Southwell's model"
+    assert [[w.name for w in group] for group in witnesses.groups(standing)] == [["pinocchio-loops"], ["closed form"]]
 
 
 @needs_run

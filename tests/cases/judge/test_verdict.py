@@ -68,6 +68,7 @@ def test_a_wide_but_true_bracket_is_an_estimate_and_a_wrong_one_fails() -> None:
     assert bracketed(0.010, 0.012, TARGET)[0] == "estimate"
     assert "±" not in bracketed(0.010, 0.012, TARGET)[1]
     assert "1.20 %" in bracketed(0.010, 0.012, TARGET)[1]
+    assert "differs by −0.99 %" in bracketed(0.010, 0.012, TARGET)[1]
     assert bracketed(0.013, 0.012, TARGET)[0] == "fail"
     assert bracketed(1e-5, 1e-5, TARGET) == ("pass", "")
     assert bracketed(1e-5, None, TARGET)[0] == "inconclusive"

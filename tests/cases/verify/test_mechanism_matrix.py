@@ -8,17 +8,14 @@ import numpy as np
 import pytest
 
 from southwell import multibody as mb
-from southwell.cases.faults import seeding
 from southwell.cases.input import library, mechanisms
 from southwell.cases.input.errors import CaseError
-from southwell.cases.judge import quantities, witnesses
 from southwell.cases.judge.cells import Head
 from southwell.cases.judge.reference import Reference
 from southwell.cases.judge.same import same
 from southwell.cases.judge.spectrum import Spectrum
 from southwell.cases.plan import mechanism
 from southwell.cases.plan.blade_columns import columns as blade_columns
-from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.references.protocol import boundary, registry, wire, worker
 from southwell.references.protocol.description import Description, describe
@@ -26,38 +23,8 @@ from southwell.references.protocol.interface import MechanismAdapter, MechanismM
 from southwell.references.protocol.process import Failure, Limits
 from southwell.references.theories import blade_formulae
 from southwell.reports.cli import app as cli
-from southwell.tests.support.codes import MECHANISM_CODES
 
 HEAD = Head("case", "code", "1", "same discretisation", 1e-8)
-TEXT = {name: library.mechanism(name) for name in library.mechanisms()}
-
-
-def rows(name: str, column: str) -> list:
-    subject = mechanism.subject(library.mechanism(name))
-    columns = subject.columns(describe(tuple(MECHANISM_CODES)), Limits(60.0), ())
-    core = subject.references(columns)()[ALL_EFFECTS]
-    (chosen,) = (c for c in columns if c.name == column)
-    return chosen(subject.points, core)[0]
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("column", [*MECHANISM_CODES, "closed form"])
-@pytest.mark.parametrize("name", library.mechanisms())
-def test_every_code_at_every_speed(name: str, column: str) -> None:
-    result = rows(name, column)
-    if result[0].verdict == "not run":
-        pytest.skip(result[0].reason)
-    text = TEXT[name].text
-    assert text.compare is not None
-    assert len(result) == 2 * text.compare.modes * len(mechanism.subject(library.mechanism(name)).points)
-    for cell in result:
-        assert (cell.verdict, cell.role, cell.target, cell.reason) == ("pass", "same discretisation", 1e-8, ""), cell
-        assert cell.difference == quantities.difference(cell.quantity, cell.value, cell.reference)
-        assert abs(cell.difference) + cell.uncertainty <= cell.target
-        assert cell.mac > 1 - 1e-9
-    assert {c.quantity for c in result} == {"frequency", "damping"}
-    families = {"hinged-blade": {"flap", "lag"}, "coleman-feingold": {"X", "Y", "lag0", "lag2"}}
-    assert {c.family for c in result} == families.get(name, {"flap", "pitch"})
 
 
 def reference() -> Reference:
@@ -307,21 +274,3 @@ def test_formulae_of_limiting_blades() -> None:
     expected = np.sqrt(delta @ K @ delta / (delta @ np.diag([100.0, 0.2]) @ delta))
     assert solution.values[0].imag == pytest.approx(expected, rel=1e-6)
     np.testing.assert_allclose(solution.shapes[0, 1] / solution.shapes[0, 0], 0.5, rtol=1e-6)
-
-
-@pytest.mark.slow
-def test_a_mechanism_is_confirmed_by_independent_groups() -> None:
-    """Exudyn is given core's spanning tree, and is no group; Pinocchio reads the mechanism itself."""
-    for name in library.mechanisms():
-        subject = mechanism.subject(library.mechanism(name))
-        run = matrix.run([subject], describe(tuple(MECHANISM_CODES)), seeding.Serial(), parts=False)
-        result = {w.name: w.kind for w in witnesses.witnesses(run, name)}
-        assert result["exudyn-loops"] == "Southwell's model"
-        if any(not c.version for c in run.cells):
-            pytest.skip("not every code is installed")
-        assert [[w.name for w in group] for group in witnesses.groups(witnesses.witnesses(run, name))] == [
-            ["pinocchio-loops"],
-            ["closed form"],
-        ]
-        assert run.settings[0].groups == 2
-        assert witnesses.short(run) == []
