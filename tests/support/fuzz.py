@@ -40,81 +40,14 @@ LONGEST_LINE = 1500
 """Characters of a message."""
 
 HOSTILE = (
-    *(
-        "nan",
-        "inf",
-        "-inf",
-        "1e308",
-        "-1e308",
-        "1e400",
-        "1e30",
-        "-2.5e9",
-        "1e-320",
-        "0",
-        "-0.0",
-        "-1",
-        "1e12",
-        "9" * 4400,
-    ),
-    *(
-        str(2**63),
-        str(-(2**63)),
-        str(2**64),
-        "0x" + "f" * 5000,
-        "1.0D+03",
-        "1.5+300",
-        "1e",
-        "1E+",
-        "1_000",
-        "٣",
-        "True",
-        "0b1",
-    ),
-    *(
-        "../../../../etc/hostname",
-        "/dev/zero",
-        "/dev/stdin",
-        "pipe",
-        "folder",
-        "loop",
-        "/proc/self/mem",
-        "x" * 300,
-        ".",
-    ),
-    *(
-        "b|<img src=x onerror=alert(1)>",
-        "::error::x",
-        "a\nb",
-        '"',
-        "'",
-        "[/]",
-        "[bold]",
-        "\0",
-        "\x1b[2J",
-        "\u2028",
-        "#",
-        "%",
-        ";",
-    ),
-    *(
-        "[" * 3000,
-        "{a=" * 3000,
-        "{" * 100_000,
-        "[" * 100_000,
-        "a." * 5000 + "a=1",
-        "- " * 5000,
-        "(" * 5000,
-        "&a [*a, *a]",
-    ),
-    *(
-        "x" * 200_000,
-        "1 " * 100_000,
-        "!!python/object:os.system x",
-        "!include /etc/hostname",
-        "*SUBSTRUCTURE",
-        "%%MatrixMarket",
-    ),
-)
+    "nan", "inf", "-inf", "1e308", "-1e308", "1e400", "1e30", "-2.5e9", "1e-320", "0", "-0.0", "-1", "1e12",
+    "9" * 4400, str(2**63), str(-(2**63)), str(2**64), "0x" + "f" * 5000, "1.0D+03", "1.5+300", "1e", "1E+", "1_000",
+    "٣", "True", "0b1", "../../../../etc/hostname", "/dev/zero", "/dev/stdin", "pipe", "folder", "loop",
+    "/proc/self/mem", "x" * 300, ".", "b|<img src=x onerror=alert(1)>", "::error::x", "a\nb", '"', "'", "[/]",
+    "[bold]", "\0", "\x1b[2J", "\u2028", "#", "%", ";", "[" * 3000, "{a=" * 3000, "{" * 100_000, "[" * 100_000,
+    "a." * 5000 + "a=1", "- " * 5000, "(" * 5000, "&a [*a, *a]", "x" * 200_000, "1 " * 100_000,
+    "!!python/object:os.system x", "!include /etc/hostname", "*SUBSTRUCTURE", "%%MatrixMarket",
+)  # fmt: skip
 NUMBER = re.compile(rb"(?<![\w.])[+-]?\d+\.?\d*(?:[eE][+-]?\d+)?")
 WORD = re.compile(rb"[A-Za-z_][\w./-]+")
 
@@ -240,37 +173,14 @@ def _run():
 
     def cell(mode: int, code: str, **more: Any) -> Cell:
         row: dict[str, Any] = {
-            "case": "beam",
-            "omega": 10.0,
-            "mode": mode,
-            "family": "flapwise",
-            "ordinal": mode,
-            "code": code,
-            "version": "1",
-            "role": "code",
-            "value": 11.7,
-            "reference": 11.7,
-            "difference": 1e-6,
-            "uncertainty": 1e-7,
-            "target": 1e-3,
-            "verdict": "pass",
-            "full": 11.7,
-            "elements": 20,
-            "order": 4.0,
-            "mac": 1.0,
+            "case": "beam", "omega": 10.0, "mode": mode, "family": "flapwise", "ordinal": mode, "code": code,
+            "version": "1", "role": "code", "value": 11.7, "reference": 11.7, "difference": 1e-6, "uncertainty": 1e-7,
+            "target": 1e-3, "verdict": "pass", "full": 11.7, "elements": 20, "order": 4.0, "mac": 1.0,
             "shares": "nothing",
-        }
+        }  # fmt: skip
         return Cell(**row | more)
 
-    empty = {
-        "value": None,
-        "reference": None,
-        "difference": None,
-        "uncertainty": None,
-        "full": None,
-        "mac": None,
-        "family": "",
-    }
+    empty = dict.fromkeys(("value", "reference", "difference", "uncertainty", "full", "mac")) | {"family": ""}
     cells = (cell(1, "a"), cell(2, "a"), cell(1, "b", difference=0.02, verdict="fail", reason="because"))
     cells += (cell(0, "c", verdict="not run", reason="not installed", **empty),)
     return Run(
