@@ -174,6 +174,33 @@ def git(folder: Path, *arguments: str) -> str:
 
 @pytest.mark.slow
 @pytest.mark.skipif(BASH is None or shutil.which("git") is None, reason="no bash, or no git")
+@pytest.mark.parametrize(
+    ("codes", "conform", "checked"),
+    [
+        ("exudyn-tree,my_code:CODE,other.mod:SOLVER", "true", ["conform my_code:CODE", "conform other.mod:SOLVER"]),
+        ("exudyn-tree", "true", []),
+        ("my_code:CODE", "false", []),
+    ],
+)
+def test_the_action_checks_the_conformance_of_own_codes(
+    tmp_path: Path, codes: str, conform: str, checked: list[str]
+) -> None:
+    """The step as it stands, with a command that notes its arguments and fails for the second code."""
+    step = next(s for s in steps(ACTION) if "conform" in s.get("run", ""))
+    command = tmp_path / "southwell"
+    command.write_text('#!/bin/sh\necho "$@" >> called\ntest "$2" != other.mod:SOLVER\n')
+    command.chmod(0o755)
+    path = os.pathsep.join([str(tmp_path), os.environ["PATH"]])
+    done = subprocess.run(
+        ["bash", "-eo", "pipefail", "-c", step["run"]],
+        cwd=tmp_path,
+        env=os.environ | {"PATH": path, "CODES": codes, "CONFORM": conform},
+    )
+    called = tmp_path / "called"
+    assert (called.read_text().splitlines() if called.exists() else []) == checked
+    assert done.returncode == (1 if len(checked) == 2 else 0)
+
+
 def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     """The two steps that read and write it, as they stand, against a repository beside."""
     named = {s.get("name"): s["run"] for s in steps(ROOT / ".github" / "workflows" / "matrix.yml") if "run" in s}

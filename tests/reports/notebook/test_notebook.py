@@ -42,6 +42,17 @@ def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) ->
     ] * 2
 
 
+def test_a_plot_has_every_mode_asked_for() -> None:
+    """Torsion modes move no point of the axis; they used to be omitted without a word."""
+    section = {"EA": 1e8, "GJ": 1e2, "EI_y": 1e5, "EI_z": 2e5, "mass": 3.0, "I_y": 0.1, "I_z": 0.1}
+    result = southwell.modes(southwell.uniform_blade("beam", 5.0, 0.5, **section), OMEGA, modes=4, elements=10)
+    assert "torsion 1" in result.names
+    axes = result.plot(modes=4)
+    assert [str(line.get_label()).split(" (")[0] for line in axes.lines] == result.names
+    for line in axes.lines:
+        assert np.abs(np.asarray(line.get_ydata(), float)).max() == pytest.approx(1.0)
+
+
 def test_python_and_the_command_take_the_same_names_and_give_the_same_numbers(
     blade: southwell.Blade, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
