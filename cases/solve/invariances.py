@@ -106,7 +106,9 @@ class Invariances:
         error = first.uncertainty + second.uncertainty + ROUNDING
         if invariance.exact:
             return first, second.frequencies, error
-        # linear interpolation between stations: the error falls with the square of their distance
+        # linear interpolation between stations: the error falls with the square of their distance; at a kink the other
+        # description needs different properties on either side of one station, and it falls with the distance
         fine = modes(invariance.alter(self.blade, 2)[1], omega)
-        step = (fine.frequencies - second.frequencies) / 3.0
+        order = 1 if self.blade.kinks else 2
+        step = (fine.frequencies - second.frequencies) / (2**order - 1)
         return first, fine.frequencies + step, error + fine.uncertainty + np.abs(step) / first.frequencies

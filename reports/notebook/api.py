@@ -53,7 +53,7 @@ def read(
     root: str | Path | None = None,
     allow_outside: bool = False,
 ) -> Blade:
-    """Read the blade in a file, or the blade of a case that comes with the package.
+    """Read the blade in a file or of a case, which is named or is a TOML file with speeds.
 
     Args:
         path: ElastoDyn, BeamDyn, BModes, HAWC2, windIO, or Southwell's TOML or CSV; or a case, ``"nrel-5mw"`` or
@@ -87,7 +87,7 @@ def read(
         allowed.enter_context(files.outside_allowed(allow_outside))
         if root is not None:
             allowed.enter_context(files.root_allowed(Path(root)))
-        if str(path).partition("/")[0] not in (*library.names(), *library.mechanisms(), *library.turbines()):
+        if library.is_blade_file(str(path)):
             return readers.reading(Path(path), mount).mounted(Path(path))
         if mount != Mount():
             raise CaseError(f"{path}: a case defines how its blade is mounted: leave out main, length and the like")

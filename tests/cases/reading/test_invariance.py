@@ -52,6 +52,20 @@ def test_all_descriptions_have_the_same_frequencies() -> None:
     assert max(abs(row.difference or 0.0) for row in rows.values()) < 1e-7
 
 
+def test_at_a_kink_a_moved_axis_converges_with_the_first_order(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A strip swept by 45° (OWENSFEA.jl 1f201a4, scaled): a moved axis was called wrong by 0.034 % ± 0.016 %."""
+    s, end = np.array([0.0, 0.25, 0.5]), 0.25 + 0.25 / np.sqrt(2)
+    curve = np.array([[0.0, 0.0, 0.0], [0.25, 0.0, 0.0], [end, 0.25 - end, 0.0]])
+    stiffness = section_stiffness(np.full(3, 2.1e8), 19824.21875, 7000.0, 43750.0, 6.730769e7, 6.730769e7)
+    mass = np.repeat(section_mass(7.8, 2.6e-4, 1.625e-3), 3, axis=0)
+    strip = Blade("strip", s, stiffness, mass, np.zeros(3), curve=curve, kinks=(0.25,))
+    moved = [i for i in invariance.INVARIANCES if i.name == "reference axis moved"]
+    monkeypatch.setattr("southwell.cases.solve.invariances.INVARIANCES", moved)
+    [row] = Invariances("strip", strip, 200 * np.pi, 6)()
+    assert row.verdict == "pass"
+    assert 1e-6 < (row.target or 0.0) < 2e-5
+
+
 def test_a_hinged_root_turns_with_its_blade() -> None:
     rows = checked(blade(root=np.array([np.inf, np.inf, np.inf, np.inf, 0.0, np.inf]), tip_mass=np.zeros((6, 6))))
     assert rows["pitch stated as twist"].reason == "the root is not clamped: its hinge turns with the pitch"

@@ -42,6 +42,12 @@ def test_modes_are_cores_with_names_and_uncertainties(blade: southwell.Blade) ->
     ] * 2
 
 
+def test_the_file_of_a_case_is_read(blade: southwell.Blade) -> None:
+    """A TOML file with speeds, as the commands take it; it used to be refused for its description."""
+    read = southwell.read(Path(__file__).parents[3] / "cases" / "data" / "park-cantilever.toml")
+    np.testing.assert_array_equal(read.mass, blade.mass)
+
+
 def test_a_plot_has_every_mode_asked_for() -> None:
     """Torsion modes move no point of the axis; they used to be omitted without a word."""
     section = {"EA": 1e8, "GJ": 1e2, "EI_y": 1e5, "EI_z": 2e5, "mass": 3.0, "I_y": 0.1, "I_z": 0.1}
