@@ -25,63 +25,48 @@ ABOUT = (
     "uncertainty and, where known, its cause. For one command: southwell COMMAND --help.",
 )
 
-ONE_BLADE, VERIFY, OTHER, CI, LAST = (
-    Group.create_ordered(name)
-    for name in ("Your blade", "Verification", "Other models", "Regression and continuous integration", "Options")
-)
-
-COMMANDS = (
-    (
-        ONE_BLADE,
-        "campbell",
-        "cli.blade.campbell:command",
-        "Compute the Campbell diagram of a blade or a turbine and judge its margins.",
+COMMANDS: dict[str, tuple[tuple[str, str, str], ...]] = {
+    "Your blade": (
+        (
+            "campbell",
+            "cli.blade.campbell:command",
+            "Compute the Campbell diagram of a blade or a turbine and judge its margins.",
+        ),
+        ("modes", "cli.blade.modes:modes", "Compute the natural frequencies of a blade and name its modes."),
+        ("show", "cli.blade.show:command", "Show the mass, sections and axes of a blade, and how its file was read."),
+        ("convert", "cli.blade.convert:command", "Write a blade in another format."),
+        ("study", "cli.blade.study:command", "Solve sampled variants of blades at many speeds."),
     ),
-    (ONE_BLADE, "modes", "cli.blade.modes:modes", "Compute the natural frequencies of a blade and name its modes."),
-    (
-        ONE_BLADE,
-        "show",
-        "cli.blade.show:command",
-        "Show the mass, sections and axes of a blade, and how its file was read.",
+    "Verification": (
+        (
+            "verify",
+            "cli.verify:command",
+            "Solve blades and turbines with every code, compare the results and write a report.",
+        ),
+        ("report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
+        ("pages", "cli.pages:command", "Write a run as HTML, dashboard, and a summary on two pages."),
+        ("cases", "cli.listings:cases", "List the cases that come with the package."),
+        (
+            "codes",
+            "cli.listings:code_app",
+            "List the codes: version, what they share with Southwell's own solver, how to install them.",
+        ),
+        ("conform", "cli.conform:command", "Run the conformance checks on a code."),
+        ("validate", "validation.page:command", "Compare models of measured rotors with their measurements."),
+        ("cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),
     ),
-    (ONE_BLADE, "convert", "cli.blade.convert:command", "Write a blade in another format."),
-    (
-        VERIFY,
-        "verify",
-        "cli.verify:command",
-        "Solve blades and turbines with every code, compare the results and write a report.",
+    "Other models": (
+        ("mechanism", "cli.blade.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
+        ("judge", "cli.judge:command", "Judge linearisations of OpenFAST: find their defects and name their modes."),
+        ("condense", "cli.blade.condense:command", "Condense finite element matrices of a blade to a multibody model."),
     ),
-    (VERIFY, "report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
-    (VERIFY, "pages", "cli.pages:command", "Write a run as HTML, dashboard, and a summary on two pages."),
-    (VERIFY, "cases", "cli.listings:cases", "List the cases that come with the package."),
-    (
-        VERIFY,
-        "codes",
-        "cli.listings:code_app",
-        "List the codes: version, what they share with Southwell's own solver, how to install them.",
+    "Regression and continuous integration": (
+        ("gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
+        ("history", "cli.history:app", "Record the results of runs by commit."),
+        ("dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),
     ),
-    (VERIFY, "conform", "cli.conform:command", "Run the conformance checks on a code."),
-    (
-        VERIFY,
-        "validate",
-        "validation.page:command",
-        "Compare models of measured rotors with their measurements.",
-    ),
-    (VERIFY, "cache", "cli.cache:app", "Show, check or empty the store of answers that verify reuses."),
-    (ONE_BLADE, "study", "cli.blade.study:command", "Solve sampled variants of blades at many speeds."),
-    (OTHER, "mechanism", "cli.blade.modes:mechanism", "Compute the steady state and the modes of any mechanism."),
-    (OTHER, "judge", "cli.judge:command", "Judge linearisations of OpenFAST: find their defects and name their modes."),
-    (
-        OTHER,
-        "condense",
-        "cli.blade.condense:command",
-        "Condense finite element matrices of a blade to a multibody model.",
-    ),
-    (CI, "gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
-    (CI, "history", "cli.history:app", "Record the results of runs by commit."),
-    (CI, "dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),
-)
-"""Group, name, function and summary of each command; the summary is also the first line of the command's help."""
+}
+"""Name, function and summary of each command by group; the summary is also the first line of the command's help."""
 
 
 def _version() -> str:
@@ -97,20 +82,21 @@ def _default(value: object) -> str | None:
 
 def build(listing: bool = False) -> App:
     """Build the application; with ``listing``, commands are listed but not imported."""
+    *groups, last = (Group.create_ordered(name) for name in (*COMMANDS, "Options"))
     built = App(
         name="southwell",
         help="\n\n".join((*ABOUT, f"Exit status: {listed()}.")),
         help_format="plaintext" if listing else "markdown",  # the library for Markdown takes long to load
         help_epilogue=f"{ROOT} FOLDER: a file may name files anywhere in FOLDER; {OUTSIDE}: in any folder (any command).",
-        group_commands=LAST,
+        group_commands=last,
         default_parameter=Parameter(negative=(), show_default=_default),
         version=_version,
         suppress_keyboard_interrupt=False,
     )
     reports = str(__package__).rpartition(".")[0]
-    for place, (group, name, target, line) in enumerate(COMMANDS):
-        path = f"{reports}.{target}"
-        built.command(path, name=name, group=group, sort_key=place, help=line if listing else None)
+    for group, commands in zip(groups, COMMANDS.values(), strict=True):
+        for place, (name, target, line) in enumerate(commands):
+            built.command(f"{reports}.{target}", name=name, group=group, sort_key=place, help=line if listing else None)
     built.register_install_completion_command(help="Install completion for bash, zsh or fish, and exit.")
     return built
 
@@ -163,7 +149,7 @@ def _status(words: list[str]) -> int:
 
 def _run(words: list[str]) -> int:
     chosen = build(listing=True) if words in ([], *([flag] for flag in app.help_flags)) else app
-    runs = bool(words) and words[0] in {name for _, name, *_ in COMMANDS}
+    runs = bool(words) and words[0] in {name for commands in COMMANDS.values() for name, *_ in commands}
     with _one_thread() if runs else nullcontext():
         return chosen(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
 

@@ -15,4 +15,4 @@ MEANING: dict[int, str] = {
 
 def listed() -> str:
     """All statuses in one sentence."""
-    return ", ".join(f"{status} {meaning.partition(':')[0]}" for status, meaning in MEANING.items())
+    return "; ".join(f"{status}: {meaning.partition(':')[0]}" for status, meaning in MEANING.items())
