@@ -87,8 +87,11 @@ def _stiffness(strain: int) -> Callable[[Blade, Change], Blade]:
             if strain == AXIAL:
                 column = part[:, place]
                 part = part + (change.value - 1.0) * np.outer(column, column) / part[place, place]
+                part[place] = part[:, place] = change.value * column
             else:
-                part[place, place] += (change.value - 1.0) / np.linalg.inv(part)[place, place]
+                others = np.arange(len(part)) != place
+                coupled = part[place, others] @ np.linalg.solve(part[np.ix_(others, others)], part[others, place])
+                part[place, place] = coupled + change.value * (part[place, place] - coupled)
             section[np.ix_(soft, soft)] = part
         return replace(blade, stiffness=stiffness)
 

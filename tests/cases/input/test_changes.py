@@ -8,7 +8,7 @@ import pytest
 from southwell.cases.input.changes import apply, parse
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import sections
-from southwell.core.blade import Blade, uniform_blade
+from southwell.core.blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, uniform_blade
 from southwell.core.solve import mesh_modes
 from southwell.core.space import spatial as sp
 
@@ -37,6 +37,17 @@ def test_a_stiffness_is_scaled_about_its_own_centre_and_all_else_stays(blade: Bl
         np.testing.assert_allclose(getattr(after, other), factor * getattr(before, other), rtol=1e-9)
     for centre in ("mass_centre", "tension_centre", "shear_centre"):
         np.testing.assert_allclose(getattr(after, centre), getattr(before, centre), atol=1e-9)
+
+
+@pytest.mark.parametrize(("name", "strain"), [("EI_flap", BEND_Y), ("EI_edge", BEND_Z), ("GJ", TORSION), ("EA", AXIAL)])
+def test_a_small_factor_loses_no_digits(name: str, strain: int) -> None:
+    """A factor of 1e-14 once left what rounding had made of the stiffness; one that leaves nothing is refused."""
+    small = apply(plain(), [parse(f"{name}=*1e-14")])
+    np.testing.assert_allclose(
+        small.stiffness[:, strain, strain], 1e-14 * plain().stiffness[:, strain, strain], rtol=1e-12
+    )
+    with pytest.raises(CaseError, match="stiffness: diagonal"):
+        apply(plain(), [parse(f"{name}=*1e-200")])
 
 
 def test_frequencies_at_rest_follow_the_square_root() -> None:
