@@ -14,7 +14,7 @@ from .diagram import CampbellRequest, solver
 
 
 @dataclass(frozen=True)
-class Changed:
+class ModeDifference:
     """One mode of a blade and its partner in the other.
 
     Attributes:
@@ -43,7 +43,7 @@ class Changed:
 
 def changes(
     blade: Blade, against: Blade, speeds: Sequence[float], modes: int, elements: int | None
-) -> tuple[Changed, ...]:
+) -> tuple[ModeDifference, ...]:
     """Pair the lowest ``modes`` of ``blade`` at each of ``speeds`` (rad/s) with those of ``against``.
 
     Both have ``elements`` equal elements, or as many as the accuracy of ``CampbellRequest`` requires. Shapes are compared by
@@ -58,7 +58,7 @@ def changes(
     return tuple(row for omega in speeds for row in _at(blade, first(omega), second(omega), modes, weight))
 
 
-def _at(blade: Blade, ours: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[Changed]:
+def _at(blade: Blade, ours: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[ModeDifference]:
     ours, other = aligned(ours, weight), aligned(other, weight)
     indices = range(min(modes, len(ours.frequencies)))
     names = numbered(families(participation(ours, blade)))
@@ -71,7 +71,9 @@ def _at(blade: Blade, ours: Modes, other: Modes, modes: int, weight: np.ndarray)
                 float(other.frequencies[partner.mode]),
                 _uncertainty(ours, k) + _uncertainty(other, partner.mode),
             )
-        out.append(Changed(ours.omega, names[k], float(ours.frequencies[k]), theirs, sure, partner.mac, partner.note))
+        out.append(
+            ModeDifference(ours.omega, names[k], float(ours.frequencies[k]), theirs, sure, partner.mac, partner.note)
+        )
     return out
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..judge.results import Cell, Run
 from .diagram import Campbell
 
-SAME = 1e-3
+MAX_DISTANCE = 1e-3
 """Largest relative difference between the frequencies of a line and of the run for the same mode."""
 
 
@@ -61,9 +61,9 @@ def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
 
 
 def _is(cell: Cell, frequency: float, run: Run) -> bool:
-    """Whether a cell is for the mode of this frequency: the nearest mode of the run, within ``SAME``."""
+    """Whether a cell is for the mode of this frequency: the nearest mode of the run, within ``MAX_DISTANCE``."""
     if not (cell.mode and cell.full and cell.role == "code"):
         return False
     every = {c.full for c in run.cells if c.omega == cell.omega and c.full}
     nearest = min(every, key=lambda f: abs(f - frequency))
-    return cell.full == nearest and abs(nearest / frequency - 1.0) < SAME
+    return cell.full == nearest and abs(nearest / frequency - 1.0) < MAX_DISTANCE

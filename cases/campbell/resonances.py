@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ...core.modes import Modes
 from ..judge.pairing import Array, aligned, mac
 from .lines import Line
-from .tracking import SURE, Solver, Tracks
+from .tracking import MIN_MAC, Solver, Tracks
 
 Range = tuple[float, float]
 """Lowest and highest operating speed, rad/s."""
@@ -150,7 +150,7 @@ def _same(tracks: Tracks, t: int, near: NDArray[np.intp], solved: Modes, weight:
     modes = set()
     for k in near:
         table = mac(tracks.shapes[k, [t]], solved.shapes, weight)[0]
-        modes.add(int(table.argmax()) if table.max() >= SURE else -1)
+        modes.add(int(table.argmax()) if table.max() >= MIN_MAC else -1)
     return modes.pop() if len(modes) == 1 and -1 not in modes else None
 
 

@@ -1,7 +1,7 @@
 """Tracking of modes over rotor speed by shape; the step is halved where the shapes are ambiguous.
 
 Neighbouring speeds are linked by the assignment with the largest sum of mass-weighted MACs. A step is accepted if every
-mode of interest has at least MAC ``SURE`` with its predecessor and no two of them swap places; otherwise it is halved,
+mode of interest has at least MAC ``MIN_MAC`` with its predecessor and no two of them swap places; otherwise it is halved,
 down to a given smallest step. A link that is still ambiguous is recorded as a ``Doubt``. Two modes that swap places
 between neighbouring speeds cross, or veer too closely to be resolved: their shapes bound the gap. With stiffness
 coupling κ between two modes of squared frequencies δ apart (Pierre 1988; Leissa 1974), each shape contains κ/δ of the
@@ -22,7 +22,7 @@ from ..judge.pairing import Array, aligned, mac
 Solver = Callable[[float], Modes]
 """Modes at a rotor speed, rad/s; the same number at every speed."""
 
-SURE = 0.95
+MIN_MAC = 0.95
 """Least MAC for a certain link between two speeds (the angle between the shapes is 13°)."""
 
 LOST = 0.5
@@ -176,7 +176,7 @@ def _bound(a: Modes, b: Modes, before: tuple[int, int], after: tuple[int, int], 
 def _sure(link: _Link, a: Modes, count: int) -> bool:
     """Whether the links of the ``count`` lowest modes need no smaller step."""
     for i, p in zip(link.rows, link.columns, strict=True):
-        if (i < count or p < count) and link.table[i, p] < SURE:
+        if (i < count or p < count) and link.table[i, p] < MIN_MAC:
             return False
     return all(i >= count or gap <= CLOSED * a.frequencies[i] for (i, _), gap in link.bounds.items())
 
@@ -197,7 +197,7 @@ def _strung(
             taken = p is not None and value >= LOST
             if taken and p is not None:
                 here[p] = owner[k][i]
-            if value < SURE and (i < count or (p is not None and p < count)):
+            if value < MIN_MAC and (i < count or (p is not None and p < count)):
                 rival = float(np.delete(link.table[i], p if p is not None else []).max(initial=0.0))
                 step = (points[k].omega, points[k + 1].omega)
                 frequency = float(points[k].frequencies[i])

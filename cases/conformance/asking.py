@@ -27,41 +27,41 @@ class NotForItError(Exception):
     """A check that the code declines or that does not apply to it, with the reason."""
 
 
-def keep(true: Any, message: str) -> None:
+def require(true: Any, message: str) -> None:
     """Fail the check with a message unless something holds."""
     if not bool(true):
         raise BrokenError(message)
 
 
-def close(values: Any, exact: Any, what: str, within: float, first: int = 1) -> None:
+def require_close(values: Any, exact: Any, what: str, within: float, first: int = 1) -> None:
     """Compare the frequencies (rad/s) of the modes ``first``, … with the expected ones, within a relative tolerance.
 
     ``what`` names the blade with its parameter and speed; the message adds the mode that differs most.
     """
     values, exact = np.atleast_1d(values), np.atleast_1d(exact)
-    keep(len(values) >= len(exact), f"{what}: {len(values)} modes, {len(exact)} expected")
+    require(len(values) >= len(exact), f"{what}: {len(values)} modes, {len(exact)} expected")
     values = values[: len(exact)]
     off = np.abs(values / exact - 1.0)
     k = int(off.argmax())
     said = f"{what}, mode {first + k}: {values[k]:.9g} rad/s, expected {exact[k]:.9g}"
-    keep(off[k] <= within, f"{said}: {off[k]:.1e} apart, at most {within:.0e}")
+    require(off[k] <= within, f"{said}: {off[k]:.1e} apart, at most {within:.0e}")
 
 
 def named(code: Adapter) -> None:
     """Check the declarations that codes for blades and for mechanisms have in common."""
-    keep(
+    require(
         code.name and not set(code.name) & set(" ,:/\n"),
         f"name: {code.name!r}: it is typed on a command line: no spaces, commas, colons or slashes",
     )
-    keep(code.title.strip(), "title: empty")
-    keep(
+    require(code.title.strip(), "title: empty")
+    require(
         code.independence is None or isinstance(code.independence, Independence),
         f"independence: {code.independence!r}: not a references.protocol.interface.Independence",
     )
-    keep(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
+    require(isinstance(code.effects, Effects), f"effects: {code.effects!r}: not a core.effects.Effects")
     version = code.version()
-    keep(version is None or version.strip(), "version: empty: return None if the code is not installed")
-    keep(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
+    require(version is None or version.strip(), "version: empty: return None if the code is not installed")
+    require(version is not None or code.hint.strip(), "hint: empty: say how to install the code")
 
 
 def rounding(code: BladeAdapter) -> float:
@@ -98,7 +98,9 @@ def along(modes: Modes, axis: int) -> int:
     """The lowest mode whose tip moves most along ``axis`` of y, z."""
     tips = np.abs(modes.shapes[:, -1, 1:3])
     modes_along = np.flatnonzero(tips[:, axis - 1] > tips[:, 2 - axis])
-    keep(modes_along.size, f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: axes not converted?")
+    require(
+        modes_along.size, f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: axes not converted?"
+    )
     return int(modes_along[0])
 
 
@@ -107,4 +109,4 @@ def agrees(code: BladeAdapter, blade: Blade, omega: float, exact: float, axis: i
     limit, fine, bracket = limit_of(code, blade, omega)
     k = 0 if axis is None else along(fine, axis)
     where = "" if axis is None else f" along {'xyz'[axis]}"
-    close(limit[k], exact, f"{blade.name} at {omega:g} rad/s, lowest{where}", max(bracket, TOLERANCE), k + 1)
+    require_close(limit[k], exact, f"{blade.name} at {omega:g} rad/s, lowest{where}", max(bracket, TOLERANCE), k + 1)

@@ -15,10 +15,10 @@ from .asking import (
     agrees,
     along,
     ask,
-    close,
-    keep,
     limit_of,
     named,
+    require,
+    require_close,
     rounding,
     same,
 )
@@ -31,17 +31,17 @@ FEWEST = 5
 def declares(code: BladeAdapter) -> None:
     """The declarations of the adapter are valid."""
     named(code)
-    keep(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: not a whole number (0: spectral)")
-    keep(
+    require(isinstance(code.order, int) and code.order >= 0, f"order: {code.order!r}: not a whole number (0: spectral)")
+    require(
         isinstance(code.digits, int) and code.digits >= FEWEST,
         f"digits: {code.digits!r}: not a whole number of at least {FEWEST}",
     )
     steps = np.divide(code.levels[1:], code.levels[:-1])
-    keep(
+    require(
         len(steps) >= 2 and (steps >= 1.4).all(),
         f"levels: {code.levels}: at least three are needed, each at least 1.4 times the previous one",
     )
-    keep(
+    require(
         code.unsupported(BEAM) is None, f"unsupported: {code.unsupported(BEAM)}: every code must accept a uniform beam"
     )
 
@@ -52,7 +52,9 @@ def refuses(code: BladeAdapter) -> None:
     for p, reason in reasons:
         if reason is None:
             continue
-        keep(reason.strip() and "\n" not in reason, f"{p.name}: unsupported: {reason!r}: not one line with the reason")
+        require(
+            reason.strip() and "\n" not in reason, f"{p.name}: unsupported: {reason!r}: not one line with the reason"
+        )
         try:
             code.solve(p.having, 0.0, code.levels[0], 1)
         except CodeError:
@@ -65,7 +67,7 @@ def refuses(code: BladeAdapter) -> None:
 def at_rest(code: BladeAdapter) -> None:
     """A uniform cantilever, two modes in each plane."""
     limit, _, bracket = limit_of(code, BEAM, 0.0)
-    close(limit, np.repeat(CANTILEVER[:2], 2), "beam at 0 rad/s, in pairs", max(bracket, TOLERANCE))
+    require_close(limit, np.repeat(CANTILEVER[:2], 2), "beam at 0 rad/s, in pairs", max(bracket, TOLERANCE))
 
 
 def turning(code: BladeAdapter) -> None:
@@ -80,16 +82,16 @@ def counts(code: BladeAdapter) -> None:
     few, many = (ask(code, BEAM, blades.SPEED, 0, count) for count in (3, 8))
     for modes, count in ((few, 3), (many, 8)):
         f = modes.frequencies
-        keep(3 <= len(f) <= count, f"beam at {blades.SPEED:g} rad/s: {count} modes requested, {len(f)} returned")
+        require(3 <= len(f) <= count, f"beam at {blades.SPEED:g} rad/s: {count} modes requested, {len(f)} returned")
         bad = np.flatnonzero(~(f > 0) | (np.diff(f, prepend=0.0) < 0))
-        keep(
+        require(
             not bad.size,
             f"beam at {blades.SPEED:g} rad/s, mode {int(bad[0]) + 1 if bad.size else 0}: frequencies {f.tolist()}: not "
             "positive and ascending",
         )
-        keep(modes.omega == blades.SPEED, f"Modes.omega: {modes.omega}, requested {blades.SPEED}")
-        keep(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, requested {code.levels[0]}")
-    close(many.frequencies, few.frequencies, f"beam at {blades.SPEED:g} rad/s, 3 and 8 requested", same(code))
+        require(modes.omega == blades.SPEED, f"Modes.omega: {modes.omega}, requested {blades.SPEED}")
+        require(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, requested {code.levels[0]}")
+    require_close(many.frequencies, few.frequencies, f"beam at {blades.SPEED:g} rad/s, 3 and 8 requested", same(code))
 
 
 def repeats(code: BladeAdapter) -> None:
@@ -98,7 +100,7 @@ def repeats(code: BladeAdapter) -> None:
     ask(code, replace(BEAM, hub_radius=1.0), 1.0, 1)
     again = ask(code, BEAM, blades.SPEED, 0)
     alike = np.array_equal(first.frequencies, again.frequencies) and np.array_equal(first.shapes, again.shapes)
-    keep(
+    require(
         alike,
         f"beam at {blades.SPEED:g} rad/s: the same call before and after another (hub radius 1 m, 1 rad/s): "
         f"{first.frequencies.tolist()}, then {again.frequencies.tolist()}",
@@ -109,15 +111,15 @@ def shapes(code: BladeAdapter) -> None:
     """The first shape, nearly that at rest."""
     shape = ask(code, BEAM, blades.SPEED, 1).shapes[0]
     at = f"beam at {blades.SPEED:g} rad/s, mode 1"
-    keep(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"{at}: the root moves: {shape[0].tolist()}")
+    require(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"{at}: the root moves: {shape[0].tolist()}")
     moved = np.abs(shape[:, 1:3]).max(axis=1)
     wrong = np.abs(moved / moved[-1] - blades.cantilever_shape()).max()
-    keep(
+    require(
         wrong < 0.02,
         f"{at}: the shape differs from the cantilever's by up to {wrong:.3f} of the tip's motion: wrong stations or scale?",
     )
     stray = np.abs(shape[:, [0, 3]]).max() / moved[-1]
-    keep(stray < 0.05, f"{at}: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
+    require(stray < 0.05, f"{at}: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
 
 
 def order(code: BladeAdapter) -> None:
@@ -131,7 +133,7 @@ def order(code: BladeAdapter) -> None:
     if second < 1e-9:
         return
     seen = np.log(first / second) / np.log(n[1] / n[0])
-    keep(
+    require(
         seen > code.order - 0.3,
         f"beam at 0 rad/s, mode 3: observed order {seen:.2f}, declared {code.order}: {f.tolist()} rad/s with {n} elements",
     )
@@ -149,7 +151,7 @@ def units(code: BladeAdapter) -> None:
         mass=BEAM.mass * mass * length ** (power - 1.0),
     )
     in_si, in_other_units = ask(code, BEAM, blades.SPEED, 0), ask(code, other, blades.SPEED * rate, 0)
-    close(
+    require_close(
         in_other_units.frequencies / rate,
         in_si.frequencies,
         f"beam at {blades.SPEED:g} rad/s, in ft, lb and min",
@@ -161,10 +163,10 @@ def quarter_pitch(code: BladeAdapter) -> None:
     """A pitch of 90° exchanges the planes."""
     pitched, plain = (ask(code, b, blades.SPEED, 0) for b in (replace(PLANK, pitch=np.pi / 2), blades.SWAPPED))
     at = f"plank pitched by 90° at {blades.SPEED:g} rad/s"
-    close(pitched.frequencies, plain.frequencies, f"{at}, against exchanged planes", same(code))
+    require_close(pitched.frequencies, plain.frequencies, f"{at}, against exchanged planes", same(code))
     for axis in (1, 2):
         alike = along(pitched, axis) == along(plain, axis)
-        keep(alike, f"{at}: the lowest mode along {'xyz'[axis]} is not that of a plank with exchanged planes")
+        require(alike, f"{at}: the lowest mode along {'xyz'[axis]} is not that of a plank with exchanged planes")
 
 
 def pitch_sense(code: BladeAdapter) -> None:
@@ -186,7 +188,7 @@ def precone_sense(code: BladeAdapter) -> None:
 
 def _leans(ratio: float, how: str, axis: str = "y") -> None:
     at = f"plank {how} by 0.3 rad at 0 rad/s, mode 1"
-    keep(abs(ratio + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {ratio:.4f}, expected −tan 0.3: wrong sense?")
+    require(abs(ratio + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {ratio:.4f}, expected −tan 0.3: wrong sense?")
 
 
 def _lean(modes: Modes, axis: int = 1) -> float:
@@ -209,7 +211,7 @@ def coriolis_sense(code: BladeAdapter) -> None:
     k = np.sqrt(blades.MASS * (w**2 + omega**2) / EA)
     green = np.sin(k * s) / (k * np.cos(k * LENGTH))  # of a rod with a fixed root and a free end, at its end
     exact = 2j * blades.MASS * omega * w / EA * np.trapezoid(green * v, s)
-    keep(
+    require(
         abs(u - exact) < 0.05 * abs(exact),
         f"{blade.name} at {omega:g} rad/s, mode {lag + 1}: stretch over edgewise motion at the tip {u / v[-1]:.4f}, expected "
         f"{exact / v[-1]:.4f}: wrong sign of the Coriolis terms, or exp(−iωt)?",
@@ -224,17 +226,17 @@ def torsion(code: BladeAdapter) -> None:
     turns = np.flatnonzero(np.abs(fine.shapes[:, :, 3]).max(1) > 10 * bend)
     if not turns.size:
         is_torsion = (np.abs(limit / exact - 1.0) < TOLERANCE).any()
-        keep(
+        require(
             not is_torsion,
             f"soft shaft at 0 rad/s: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
         )
         raise NotForItError("the code has no torsion")
     first = int(turns[0]) + 1
-    close(limit[turns[0]], exact, "soft shaft at 0 rad/s, lowest torsional mode", TOLERANCE, first)
+    require_close(limit[turns[0]], exact, "soft shaft at 0 rad/s, lowest torsional mode", TOLERANCE, first)
     shape = fine.shapes[turns[0], :, 3]
     wrong = np.abs(shape / shape[-1] - np.sin(np.pi / 2 * STATIONS)).max()
     at = f"soft shaft at 0 rad/s, mode {first}"
-    keep(wrong < 0.01, f"{at}: the rotation differs from a quarter sine by {wrong:.3f} of the tip's")
+    require(wrong < 0.01, f"{at}: the rotation differs from a quarter sine by {wrong:.3f} of the tip's")
 
 
 def tip_mass_weighs(code: BladeAdapter) -> None:
@@ -254,7 +256,7 @@ def tip_mass_axes(code: BladeAdapter) -> None:
         ask(code, b, blades.SPEED, 0) for b in (replace(blade, twist=np.array([0.5, 0.5])), replace(blade, pitch=0.5))
     )
     at = f"plank with an offset tip mass at {blades.SPEED:g} rad/s, twisted by 0.5 rad, against pitched"
-    close(twisted.frequencies, pitched.frequencies, at, same(code))
+    require_close(twisted.frequencies, pitched.frequencies, at, same(code))
 
 
 def coupled_planes(code: BladeAdapter) -> None:

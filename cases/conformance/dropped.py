@@ -11,7 +11,7 @@ from ...core.effects import Effects
 from ...core.spectrum.eigen import UnstableError
 from ...references.protocol.interface import BladeAdapter, CodeError
 from . import blades
-from .asking import NotForItError, keep, limit_of
+from .asking import NotForItError, limit_of, require
 from .blades import PROPERTIES, Property
 
 Array = NDArray[np.float64]
@@ -62,7 +62,7 @@ def effects(code: BladeAdapter) -> None:
             continue
         if bracket > DROPPED * change:
             raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {name}")
-        keep(
+        require(
             near <= DROPPED * change,
             f"effects.{name} = {kept}: {blades.STUBBY.name} at {blades.FAST:g} rad/s, mode {_mode(frequencies, here)}: differs "
             f"by {near:.2%} from Southwell's own solver with these effects; {name} changes the frequencies by up to "
@@ -80,7 +80,7 @@ def keeps(prop: Property, code: BladeAdapter) -> None:
     if bracket > DROPPED * change:
         raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {prop.name}")
     near, far = _far(frequencies, having), _far(frequencies, lacking)
-    keep(
+    require(
         near <= DROPPED * change,
         f"{prop.name}: at {prop.omega:g} rad/s, mode {_mode(frequencies, having)}: differs by {near:.2%} from the blade "
         f"with it, by {far:.2%} from the blade without it",

@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from ...core import multibody as mb
 from ...references.protocol.interface import CodeError, MechanismAdapter, MechanismModes
-from .asking import BrokenError, NotForItError, keep, named
+from .asking import BrokenError, NotForItError, named, require
 
 Array = NDArray[Any]
 Ask = Callable[[MechanismAdapter], None]
@@ -35,11 +35,11 @@ def _are(modes: MechanismModes, expected: Any, what: str) -> None:
     """Check the eigenvalues, one of each conjugate pair, in any order."""
     exact = np.asarray(expected, np.complex128)
     said = f"{what}: {_list(modes.values)} 1/s, expected {_list(exact)}"
-    keep(len(modes.values) == len(exact), said)
+    require(len(modes.values) == len(exact), said)
     unmatched = [complex(v.real, abs(v.imag)) for v in modes.values]
     for value in exact:
         near = min(unmatched, key=lambda v: abs(v - value))
-        keep(abs(near - value) <= TOLERANCE * np.abs(exact).max(), said)
+        require(abs(near - value) <= TOLERANCE * np.abs(exact).max(), said)
         unmatched.remove(near)
 
 
@@ -78,7 +78,7 @@ def declares(code: MechanismAdapter) -> None:
     """The declarations of the adapter are valid."""
     named(code)
     reason = code.unsupported_mechanism(pendulum())
-    keep(reason is None, f"unsupported_mechanism: {reason}: every code must accept a pendulum")
+    require(reason is None, f"unsupported_mechanism: {reason}: every code must accept a pendulum")
 
 
 def refuses(code: MechanismAdapter) -> None:
@@ -96,7 +96,7 @@ def refuses(code: MechanismAdapter) -> None:
         if reason is None:
             continue
         declined = True
-        keep(reason.strip() and "\n" not in reason, f"{what}: unsupported_mechanism: {reason!r}: not one line")
+        require(reason.strip() and "\n" not in reason, f"{what}: unsupported_mechanism: {reason!r}: not one line")
         try:
             code.solve_mechanism(mechanism, {})
         except CodeError:
@@ -110,8 +110,8 @@ def hangs(code: MechanismAdapter) -> None:
     """√(g/l), and the steady state from a guess near it."""
     modes = _ask(code, pendulum(), {"hinge.rz": 0.3})
     _are(modes, [1j * np.sqrt(G / LENGTH)], "pendulum")
-    keep(modes.coordinates == ("hinge.rz",), f"coordinates: {modes.coordinates}, expected ('hinge.rz',)")
-    keep(abs(modes.steady[0]) < 1e-9, f"pendulum: it hangs at {modes.steady[0]:.3g} rad, expected 0")
+    require(modes.coordinates == ("hinge.rz",), f"coordinates: {modes.coordinates}, expected ('hinge.rz',)")
+    require(abs(modes.steady[0]) < 1e-9, f"pendulum: it hangs at {modes.steady[0]:.3g} rad, expected 0")
 
 
 def oscillates(code: MechanismAdapter) -> None:
@@ -127,7 +127,7 @@ def oscillates(code: MechanismAdapter) -> None:
     decay = c / (2 * MASS)
     _are(modes, [complex(-decay, np.sqrt(k / MASS - decay**2))], "damped slide")
     at = 0.05 - MASS * G / k
-    keep(abs(modes.steady[0] - at) < 1e-9, f"damped slide: it settles at {modes.steady[0]:.9g} m, expected {at:.9g}")
+    require(abs(modes.steady[0] - at) < 1e-9, f"damped slide: it settles at {modes.steady[0]:.9g} m, expected {at:.9g}")
 
 
 def flaps(code: MechanismAdapter) -> None:
@@ -240,7 +240,7 @@ def reversed_joint(code: MechanismAdapter) -> None:
         [complex(v.real, abs(v.imag)) for v in ways[0].values],
         "pendulum, its hinge given from child to parent",
     )
-    keep(
+    require(
         abs(ways[0].steady[0] + ways[1].steady[0]) < 1e-9, "hinge given from child to parent: its angle is not reversed"
     )
 
@@ -251,7 +251,7 @@ def repeats(code: MechanismAdapter) -> None:
     _ask(code, hinged("lag"))
     again = _ask(code, hinged("flap"))
     same = np.array_equal(first.values, again.values) and np.array_equal(first.shapes, again.shapes)
-    keep(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
+    require(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
 
 
 def periodic(code: MechanismAdapter) -> None:

@@ -16,7 +16,7 @@ from ..solve import core_solver
 Balance = Callable[..., Steady]
 
 
-def modelled(**lacks: bool) -> Callable[[Balance], Balance]:
+def with_effects(**lacks: bool) -> Callable[[Balance], Balance]:
     """Core omits effects without declaring it."""
 
     def make(right: Balance) -> Balance:
@@ -66,7 +66,7 @@ def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
     return make
 
 
-def bladed(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
+def alter_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     """A function receives a different blade."""
 
     def make(right: Any) -> Any:
@@ -78,7 +78,7 @@ def bladed(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     return make
 
 
-def valued(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
+def alter_property(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
     """A property along the blade is altered: ``alter(values, blade, s)``."""
 
     def make(right: Any) -> Any:
@@ -171,4 +171,4 @@ def scaled_strain(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any
 
 def core_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any], Any]]:
     """Where core's columns get their modes, with another blade."""
-    return core_solver, "mesh_sweep", bladed(alter)
+    return core_solver, "mesh_sweep", alter_blade(alter)

@@ -36,7 +36,7 @@ def _thick(m: Mechanism) -> Mechanism:
 
 WHIRLING = Trial("coleman-feingold", (1.6,), ("pinocchio-loops",))
 
-SPINNING = replace(ASKED, altered=_thick)
+SPINNING = replace(ASKED, change=_thick)
 """A blade so thick that gyroscopic forces couple flap and pitch."""
 
 DAMPED = Trial("hinged-blade", (30.0,), ("pinocchio-loops",))
@@ -86,7 +86,7 @@ def _open(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, joints=tuple(j for j in mechanism.joints if not j.cut))
 
 
-def _still(mechanism: Mechanism) -> Mechanism:
+def _without_motion(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, motions=tuple(replace(m, rate=0.0) for m in mechanism.motions))
 
 
@@ -142,7 +142,7 @@ FAULTS = (
     Fault("loop left open", "adapter", "the joint that closes the loop is dropped", "factors; no partner",
           ((mechanism, "answers", _given(_open)),), ASKED),
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
-          ((mechanism, "answers", _given(_still)),), ASKED),
+          ((mechanism, "answers", _given(_without_motion)),), ASKED),
     Fault("rotor: frozen azimuth", "solver", "a rotor on a support is linearised at one azimuth", "31 %",
           ((multibody, "turning", _frozen), (periodic, "check", _unchecked)), WHIRLING),
     Fault("rotor: transformation", "solver", "multi-blade coordinates lack their gyroscopic term", "factors",

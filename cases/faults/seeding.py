@@ -18,9 +18,6 @@ from typing import Any, Literal
 import msgspec
 import numpy as np
 
-from ...core.blade import Blade
-from ...core.mechanism.description import Mechanism
-from ...core.turbine.turbine import Turbine
 from ...references.protocol import registry
 from ...references.protocol.description import Description, describe
 from ..input import library
@@ -43,16 +40,8 @@ Seam = tuple[Any, str, Callable[[Any], Any]]
 BAD = ("fail", "inconclusive")
 
 
-def _same(blade: Blade) -> Blade:
-    return blade
-
-
-def _same_turbine(turbine: Turbine) -> Turbine:
-    return turbine
-
-
-def _same_mechanism(mechanism: Mechanism) -> Mechanism:
-    return mechanism
+def _unchanged(subject: Any) -> Any:
+    return subject
 
 
 @dataclass(frozen=True)
@@ -63,11 +52,9 @@ class Trial:
         case: ``case`` or ``case/blade``, as on the command line, or the name of a mechanism or a turbine.
         speeds: rad/s.
         codes: names.
-        change: function that makes the trial's blade from the package's.
+        change: function that makes the trial's blade, mechanism or turbine from the package's.
         modes: number of modes compared; by default that of the case.
         motions: motions compared; by default those of the case.
-        altered: function that makes the trial's mechanism from the package's.
-        altered_turbine: function that makes the trial's turbine from the package's.
         reuse: whether codes' earlier answers may be taken from the store. Faults act on what a code is sent and on what it
             returned, so they have the same effect on such answers.
     """
@@ -75,11 +62,9 @@ class Trial:
     case: str
     speeds: tuple[float, ...]
     codes: tuple[str, ...]
-    change: Callable[[Blade], Blade] = _same
+    change: Callable[[Any], Any] = _unchanged
     modes: int | None = None
     motions: tuple[str, ...] = ()
-    altered: Callable[[Mechanism], Mechanism] = _same_mechanism
-    altered_turbine: Callable[[Turbine], Turbine] = _same_turbine
     reuse: bool = False
 
 
@@ -148,19 +133,19 @@ def cells(trial: Trial) -> tuple[Cell, ...]:
         subject = _turbine(trial)
     else:
         subject = _blade(trial)
-    return matrix.run([subject], known(trial), Serial(), reuse=trial.reuse, parts=False).cells
+    return matrix.run([subject], descriptions(trial), Serial(), reuse=trial.reuse, parts=False).cells
 
 
 def _mechanism(trial: Trial) -> MechanismSubject:
     subject = mechanism.subject(library.mechanism(trial.case))
-    described = replace(subject.described, mechanism=trial.altered(subject.described.mechanism))
+    described = replace(subject.described, mechanism=trial.change(subject.described.mechanism))
     return replace(subject, described=described, points=trial.speeds)
 
 
 def _turbine(trial: Trial) -> TurbineSubject:
     subject = turbine.of_case(library.turbine(trial.case))
     modes = trial.modes or subject.modes
-    return replace(subject, turbine=trial.altered_turbine(subject.turbine), points=trial.speeds, modes=modes)
+    return replace(subject, turbine=trial.change(subject.turbine), points=trial.speeds, modes=modes)
 
 
 def _blade(trial: Trial) -> BladeSubject:
@@ -176,7 +161,7 @@ def _variant(trial: Trial) -> tuple[Case, Variant]:
     return case, replace(variant, blade=trial.change(variant.blade), speeds=np.array(trial.speeds))
 
 
-def known(trial: Trial) -> tuple[Description, ...]:
+def descriptions(trial: Trial) -> tuple[Description, ...]:
     """Descriptions of a trial's codes; a fault may replace where a code is found."""
     return _described(trial, tuple(registry.locate(name) for name in trial.codes))
 
@@ -199,7 +184,7 @@ def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
     if fault.blinds:
         return _blinding(fault, by_name(fault.blinds))
     assert trial
-    if absent := [one.asked for one in known(trial) if not one.version]:
+    if absent := [one.asked for one in descriptions(trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(trial)
     try:
@@ -213,7 +198,7 @@ def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
 def _blinding(fault: Fault, other: Fault) -> Control:
     """Result for a fault in judging: another fault is no longer detected, or correct cells are bad."""
     assert other.trial
-    if absent := [one.asked for one in known(other.trial) if not one.version]:
+    if absent := [one.asked for one in descriptions(other.trial) if not one.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(other.trial)
     with seeded(fault.seams):

@@ -34,7 +34,7 @@ def _exaggerated(turbine: Turbine) -> Turbine:
     )
 
 
-TURBINE = Trial("nrel-5mw-turbine", (1.5,), ("exudyn-turbine",), altered_turbine=_exaggerated)
+TURBINE = Trial("nrel-5mw-turbine", (1.5,), ("exudyn-turbine",), _exaggerated)
 
 
 def _assembled(alter: Callable[[Turbine], Turbine]) -> tuple[Seam, ...]:

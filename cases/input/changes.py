@@ -23,7 +23,7 @@ FORM = re.compile(r"\s*(\w+)\s*=\s*(\*?)\s*([-+]?(?:\d+\.?\d*|\.\d+)(?:[eE][-+]?
 
 
 @dataclass(frozen=True)
-class Change:
+class PropertyChange:
     """A change of one property.
 
     Attributes:
@@ -40,7 +40,7 @@ class Change:
         return f"{self.name} × {self.value:g}" if self.factor else f"{self.name} = {self.value:g} {UNITS[self.name]}"
 
 
-def parse(text: str) -> Change:
+def parse(text: str) -> PropertyChange:
     """Parse a change: ``NAME=*FACTOR``, or ``NAME=VALUE`` for a scalar property.
 
     Raises:
@@ -56,10 +56,10 @@ def parse(text: str) -> Change:
         raise CaseError(f"--set {text}: {name} varies along the blade: give a factor, as in {name}=*1.1")
     if not isfinite(value) or (factor and value <= 0):
         raise CaseError(f"--set {text}: {value:g}: a factor is positive and finite, as in {name}=*1.1")
-    return Change(name, value, factor)
+    return PropertyChange(name, value, factor)
 
 
-def apply(blade: Blade, changes: Sequence[Change]) -> Blade:
+def apply(blade: Blade, changes: Sequence[PropertyChange]) -> Blade:
     """Apply all changes to a blade, in order.
 
     Raises:
@@ -75,8 +75,8 @@ def apply(blade: Blade, changes: Sequence[Change]) -> Blade:
     return blade
 
 
-def _stiffness(strain: int) -> Callable[[Blade, Change], Blade]:
-    def changed(blade: Blade, change: Change) -> Blade:
+def _stiffness(strain: int) -> Callable[[Blade, PropertyChange], Blade]:
+    def changed(blade: Blade, change: PropertyChange) -> Blade:
         stiffness = blade.stiffness.copy()
         for section in stiffness:  # (6, 6); rigid strains have no compliance
             if np.isinf(section[strain, strain]):
@@ -98,8 +98,8 @@ def _stiffness(strain: int) -> Callable[[Blade, Change], Blade]:
     return changed
 
 
-def _scaled(field: str) -> Callable[[Blade, Change], Blade]:
-    def changed(blade: Blade, change: Change) -> Blade:
+def _scaled(field: str) -> Callable[[Blade, PropertyChange], Blade]:
+    def changed(blade: Blade, change: PropertyChange) -> Blade:
         before = getattr(blade, field)
         if not np.any(before):
             raise CaseError(f"--set {change}: {change.name} is zero in this blade: a factor changes nothing")
@@ -108,14 +108,14 @@ def _scaled(field: str) -> Callable[[Blade, Change], Blade]:
     return changed
 
 
-def _number(field: str, unit: float = 1.0) -> Callable[[Blade, Change], Blade]:
-    def changed(blade: Blade, change: Change) -> Blade:
+def _number(field: str, unit: float = 1.0) -> Callable[[Blade, PropertyChange], Blade]:
+    def changed(blade: Blade, change: PropertyChange) -> Blade:
         return _scaled(field)(blade, change) if change.factor else replace(blade, **{field: unit * change.value})
 
     return changed
 
 
-PROPERTIES: dict[str, Callable[[Blade, Change], Blade]] = {
+PROPERTIES: dict[str, Callable[[Blade, PropertyChange], Blade]] = {
     "EI_flap": _stiffness(BEND_Y),
     "EI_edge": _stiffness(BEND_Z),
     "GJ": _stiffness(TORSION),

@@ -14,14 +14,14 @@ NO_STATE = (SteadyStateError, UnstableError, np.linalg.LinAlgError, EigensolverE
 """Errors of the solver if there is no stable steady state or the eigensolver fails."""
 
 
-LONGEST = 1000
+MAX_LINE = 1000
 """Maximum number of characters of a message."""
 
 
 def brief(message: str) -> str:
     """A message on one line; the middle of a long message is omitted."""
     line = " ".join(message.split())
-    return line if len(line) <= LONGEST else f"{line[: LONGEST * 2 // 3]} … {line[-LONGEST // 4 :]}"
+    return line if len(line) <= MAX_LINE else f"{line[: MAX_LINE * 2 // 3]} … {line[-MAX_LINE // 4 :]}"
 
 
 class CaseError(ValueError):

@@ -21,7 +21,7 @@ def names() -> tuple[str, ...]:
     return tuple(sorted(Path(f.name).stem for f in files(data).iterdir() if f.name.endswith(".toml")))
 
 
-def everything() -> tuple[dict[str, Case], dict[str, str]]:
+def load_all() -> tuple[dict[str, Case], dict[str, str]]:
     """The cases of the package by name, and the remedy for each whose blade files are not included and not found."""
     present, absent = {}, {}
     for name in names():

@@ -69,7 +69,7 @@ def _short(value: str) -> str:
 SHOWN = 200
 """Maximum number of characters of a value in a message."""
 
-LARGEST = 1e30
+MAX_NUMBER = 1e30
 """Numbers in a file must be smaller than this, in any unit."""
 
 
@@ -87,7 +87,7 @@ def finite(value: Any, path: str, field: str = "") -> None:
             finite(item, path, f"{field}[{k}]")
     elif isinstance(value, float) and not math.isfinite(value):
         raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
-    elif isinstance(value, int | float) and abs(value) > LARGEST:
+    elif isinstance(value, int | float) and abs(value) > MAX_NUMBER:
         shown = f"{value:.3g}" if isinstance(value, float) or abs(value) < 10**300 else "more than 300 digits"
         raise CaseError(f"{path}: {field}: {shown}: implausibly large; check the exponent")
 

@@ -6,7 +6,7 @@ from typing import Any
 
 from .quantities import QUANTITIES
 
-LONGEST = 300
+MAX_TEXT = 300
 """Maximum number of characters of a name, a version or a title."""
 
 MOST_MODES = 10_000
@@ -38,13 +38,13 @@ def check(row: Any) -> None:
         if isinstance(value, float) and not math.isfinite(value):
             raise RowError(f"{name}: {value}: not a finite number")
         if name in LINES and isinstance(value, str) and not _line(value):
-            raise RowError(f"{name}: {value[:40]!r}: not one line of at most {LONGEST} printable characters")
+            raise RowError(f"{name}: {value[:40]!r}: not one line of at most {MAX_TEXT} printable characters")
     for fault in _faults(row):
         raise RowError(fault)
 
 
 def _line(text: str) -> bool:
-    return len(text) <= LONGEST and text.isprintable()
+    return len(text) <= MAX_TEXT and text.isprintable()
 
 
 def _faults(row: Any) -> Iterator[str]:

@@ -26,7 +26,7 @@ class Coarse:
     limit: float
 
 
-def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
+def explained_by_discretisation(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
     """The cell of a printed number whose author's discretisation, named ``what``, is known.
 
     If the number is not within the target of the converged answer, its difference is known if core with that
@@ -48,7 +48,9 @@ def excused(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
     return replace(cell, verdict=verdict, reason=reason)
 
 
-def given(head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, what: str) -> Rows:
+def source_discretisation_cells(
+    head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, what: str
+) -> Rows:
     """Cells of core with a given discretisation: its coarsest answer, explained by its refinements.
 
     Args:

@@ -12,7 +12,7 @@ from .pairing import LEAST_MAC, pair
 from .reference import Reference
 from .results import Cell, Level
 from .spectrum import Spectrum
-from .verdict import AGREES, Judgement, bracketed, judge, known
+from .verdict import AGREES, Judgement, bracketed, judge, known_difference
 
 DAMPED = 1e-6
 """Largest damping ratio of a blade's mode that counts as rounding."""
@@ -34,8 +34,8 @@ def refined(
     cells = []
     for i, mode in enumerate(refined_modes):
         cell = row(head, omega, i, reference, refinements.answers[-1], mode.partner)
-        if still := _still(reference, i, head.motions):
-            cell = replace(cell, verdict="not applicable", reason=still)
+        if reason := _missing_motion(reference, i, head.motions):
+            cell = replace(cell, verdict="not applicable", reason=reason)
         elif mode.estimate:
             cell = judged(cell, reference, i, mode, late, order)
         if doubt and cell.verdict in (*AGREES, "known difference"):
@@ -78,13 +78,13 @@ def known_effects(reference: Reference, i: int, target: float) -> Judgement:
     """The verdict on the change of the ``i``-th mode due to the effects that the reference lacks."""
     full, base = reference.full[i], reference.core.modes[i].estimate
     shift = base.value / full - 1.0 if full and base else None
-    verdict, reason = known(shift, target, reference.effects[i])
+    verdict, reason = known_difference(shift, target, reference.effects[i])
     if full and reference.likeness[i] < LEAST_MAC:
         reason = join(reason, f"the shapes with and without have a MAC of only {reference.likeness[i]:.2f}")
     return verdict, reason
 
 
-def _still(reference: Reference, i: int, motions: Collection[str]) -> str:
+def _missing_motion(reference: Reference, i: int, motions: Collection[str]) -> str:
     """Why a code cannot have a mode: the dominant motion of the mode is not among the declared ``motions``.
 
     The shapes themselves are not inspected: a column that is empty because of an adapter fault looks the same.

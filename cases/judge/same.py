@@ -33,7 +33,7 @@ def rounding(core_answer: Answer, again: Sequence[Answer]) -> Array:
     return np.maximum(rounding_of_core, core_answer.rounding) if len(core_answer.rounding) else rounding_of_core
 
 
-def same(
+def same_discretisation_cells(
     head: Head,
     omega: float,
     reference: Reference,

@@ -62,7 +62,7 @@ def within(target: float) -> Judgement:
     return "coarse", f"agreement within {unsigned(target)} is no evidence; {unsigned(WIDEST)} would be"
 
 
-def known(shift: float | None, target: float, effects: Sequence[Effect]) -> Judgement:
+def known_difference(shift: float | None, target: float, effects: Sequence[Effect]) -> Judgement:
     """The verdict on a code that agrees with core when both lack the same effects.
 
     The remainder has already passed ``judge``; the cause is the effects that the code declares missing. A cause of

@@ -31,7 +31,7 @@ Standing = Literal["agrees", "coarse", "known difference", "estimate", "open", "
 INDEPENDENT: tuple[Kind, ...] = ("code", "closed form", "printed source")
 """Kinds that count."""
 
-MATTERS = ("engine", "theory", "rotation")
+INDEPENDENCE_FIELDS = ("engine", "theory", "rotation")
 """Two origins that are the same in any of these fields count once."""
 
 
@@ -101,7 +101,7 @@ def _kind(cell: Cell, origin: Origin | None) -> Kind:
 
 
 def _key(origin: Origin) -> tuple[str, ...]:
-    return tuple(getattr(origin, field) for field in MATTERS)
+    return tuple(getattr(origin, field) for field in INDEPENDENCE_FIELDS)
 
 
 def _standing(cell: Cell, target: float) -> Standing:
@@ -143,7 +143,7 @@ def foreign_theory(group: Sequence[Witness]) -> bool:
 
 
 @dataclass(frozen=True)
-class Short:
+class UnderConfirmed:
     """A blade with fewer independent groups than its case requires."""
 
     case: str
@@ -151,10 +151,10 @@ class Short:
     required: int
 
 
-def short(run: Run) -> list[Short]:
+def under_confirmed(run: Run) -> list[UnderConfirmed]:
     """Blades confirmed by fewer groups than required."""
     counted = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
-    return [Short(s.case, confirmed_by, s.groups) for s, confirmed_by in counted if confirmed_by < s.groups]
+    return [UnderConfirmed(s.case, confirmed_by, s.groups) for s, confirmed_by in counted if confirmed_by < s.groups]
 
 
 def engines(group: Sequence[Witness]) -> str:

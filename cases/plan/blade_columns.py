@@ -13,13 +13,13 @@ from ...references.protocol.process import Limits
 from ..input.schema import Case, Variant
 from ..judge.cells import Head
 from ..solve.published_tables import about, about_deck, rows
-from ..solve.reference import felt
+from ..solve.reference import relevant_effects
 from ..solve.refinement import Refining
 from ..solve.works import as_in_source, papers_equations, refined_code, same_code
 from . import deck_columns
 from .column import Column, absent_work, failing_work, not_installed
 
-SAME = 1e-8
+ROUNDING_TARGET = 1e-8
 """Target for two codes with the same discretisation."""
 
 PAPER = "paper's equations, literally"
@@ -39,12 +39,12 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
         out.append(
             Column(
                 "Southwell, as in the source",
-                felt(source.effects, blade),
+                relevant_effects(source.effects, blade),
                 head,
                 partial(as_in_source, head, blade, source),
             )
         )
-    head = Head(variant.name, PAPER, version("southwell"), "same discretisation", SAME, "everything")
+    head = Head(variant.name, PAPER, version("southwell"), "same discretisation", ROUNDING_TARGET, "everything")
     work = partial(papers_equations, head, blade)
     out.append(Column(PAPER, ALL_EFFECTS, head, work, due="highest speed"))
     for table in about(blade, case.text.compare.tables) + (about_deck(blade, variant.speeds) if variant.file else []):
@@ -53,7 +53,9 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
         work = partial(rows, head, table, blade, computed)
         theory = CORE if computed else table.series.theory or table.source
         origin = Independence(table.source, theory, theory, sections=table.source, eigensolver=table.source)
-        out.append(Column(table.name, felt(table.series.effects, blade), head, work, origin, due="somewhere"))
+        out.append(
+            Column(table.name, relevant_effects(table.series.effects, blade), head, work, origin, due="somewhere")
+        )
     takers = [code for code in codes if code.blades]
     if not takers:
         out += [_mechanisms_only(variant.name, code, target) for code in codes]
@@ -77,9 +79,9 @@ def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column
         return Column(code.name, ALL_EFFECTS, head, refused, solves=False)
     if code.version is None:
         return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)), solves=False)
-    name, effects = code.asked, felt(code.effects, blade)
+    name, effects = code.asked, relevant_effects(code.effects, blade)
     if code.shares == "discretisation":
-        head = replace(head, role="same discretisation", target=SAME)
+        head = replace(head, role="same discretisation", target=ROUNDING_TARGET)
         return Column(
             code.name,
             effects,

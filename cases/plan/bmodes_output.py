@@ -14,12 +14,12 @@ from ..judge.uncertainty import Estimate, from_print
 
 MODE = re.compile(r"Mode No\.\s*(\d+)\s*\(freq\s*=\s*([0-9.]+(?:[EeDd][+-]?\d+)?)\s*Hz")
 SPEED = re.compile(r"^\s*([0-9.+-]+(?:[EeDd][+-]?\d+)?)\s+rot_rpm\b", re.MULTILINE)
-LARGEST = 10_000_000
+MAX_BYTES = 10_000_000
 """Largest size of a file in bytes."""
 
 
 def read(path: Path) -> Iterator[tuple[int, str, float, float, str, int, Estimate]]:
-    """Fields of ``Given``, one tuple for each mode; modes are numbered among all modes of the blade.
+    """Fields of ``UserFrequency``, one tuple for each mode; modes are numbered among all modes of the blade.
 
     Raises:
         CaseError: no frequency in the file, or no .bmi file with the rotor speed beside it.
@@ -48,6 +48,6 @@ def _speed(bmi: Path, path: Path) -> float:
 
 def _text(path: Path) -> str:
     try:
-        return read_bytes(path, LARGEST).decode("utf-8", errors="replace")
+        return read_bytes(path, MAX_BYTES).decode("utf-8", errors="replace")
     except OSError as error:
         raise CaseError(f"{path}: {error.strerror or error}: give NAME=FILE.out") from error

@@ -12,7 +12,7 @@ from ..input.readers import BladeFile
 from ..input.schema import Variant
 from ..judge.cells import Head
 from ..solve.deck import deck_code
-from ..solve.reference import felt
+from ..solve.reference import relevant_effects
 from ..solve.refinement import Refining
 from .column import Column, absent_work
 
@@ -28,7 +28,7 @@ def columns(variant: Variant, codes: Sequence[Description], limits: Limits, targ
     blade = variant.blade
     motions = code.motions_in(file.source.format)
     head = Head(variant.name, code.name, asked.version or "", "code", target, "nothing", motions)
-    effects = felt(code.effects, blade)
+    effects = relevant_effects(code.effects, blade)
     if reason := code.unsupported(blade):
         return [Column(code.name, effects, head, absent_work(head, "not applicable", reason), solves=False)]
     refining = Refining(code.levels, code.order, code.finest or 8 * code.levels[-1])

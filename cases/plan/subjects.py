@@ -8,7 +8,7 @@ from msgspec.structs import replace as replaced
 
 from ..input import changes as blade_changes
 from ..input import library, mechanisms, readers, turbine_cases
-from ..input.changes import Change
+from ..input.changes import PropertyChange
 from ..input.default_case import default_case
 from ..input.errors import CaseError
 from ..input.library import is_blade_file
@@ -90,7 +90,7 @@ def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, moun
     return default_case(blade, at, rpm=rpm, source="; ".join(about), unused=source.unused, file=file)
 
 
-def _changed(case: Case | Subject, edits: Sequence[Change]) -> Case | Subject:
+def _changed(case: Case | Subject, edits: Sequence[PropertyChange]) -> Case | Subject:
     """The case with changed blade properties and without printed tables, which no longer apply."""
     if not edits:
         return case
@@ -109,7 +109,7 @@ def _changed(case: Case | Subject, edits: Sequence[Change]) -> Case | Subject:
 
 def _everything(note: Callable[[str], None]) -> tuple[Case | Subject, ...]:
     """Every case and mechanism whose files are present."""
-    present, absent = library.everything()
+    present, absent = library.load_all()
     for name, why in absent.items():
         note(f"{name}: not run: {why}")
     machines = [mechanism.subject(library.mechanism(name)) for name in library.mechanisms()]

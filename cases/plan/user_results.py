@@ -47,12 +47,12 @@ ALIASES = {"chordwise": "edgewise", "edge": "edgewise", "lag": "edgewise", "flap
 NUMBER = re.compile(r"\d+(\.\d*)?([eE][+-]?\d+)?|\.\d+([eE][+-]?\d+)?")
 
 
-LARGEST, DIGITS = 1e9, 40
+MAX_NUMBER, MAX_DIGITS = 1e9, 40
 """Largest speed or frequency in any unit, and the maximum number of characters of a number."""
 
 
 @dataclass(frozen=True)
-class Given:
+class UserFrequency:
     """One frequency of the file.
 
     Attributes:
@@ -90,7 +90,7 @@ class UserResults:
 
     name: str
     path: str
-    rows: tuple[Given, ...]
+    rows: tuple[UserFrequency, ...]
     measured: bool = False
     linearised: tuple[JudgedSet, ...] = ()
 
@@ -132,7 +132,7 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults
         CaseError: if the file is invalid; one line with the file, line, field, value, likely cause and remedy.
     """
     if path.suffix.lower() == ".out":
-        return UserResults(name, str(path), tuple(Given(*row) for row in bmodes_output.read(path)))
+        return UserResults(name, str(path), tuple(UserFrequency(*row) for row in bmodes_output.read(path)))
     (first, header), *table = files.table(path, absent="give NAME=FILE.csv")
     columns = _header(header, f"{path}: line {first}")
     if not table:
@@ -176,10 +176,10 @@ def _header(header: Sequence[str], where: str) -> _Columns:
     return _Columns(speed, frequency, sure[0] if sure else "")
 
 
-def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaults: Defaults) -> Given:
-    def number(column: str, least: float = 0.0, most: float = LARGEST) -> float:
+def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaults: Defaults) -> UserFrequency:
+    def number(column: str, least: float = 0.0, most: float = MAX_NUMBER) -> float:
         text = row[column]
-        if len(text) > DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
+        if len(text) > MAX_DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
             required = "a number above 0" if least else "a number, 0 or more"
             raise CaseError(
                 f"{where}: {column}: {text!r} is not {required}, and at most {most:g}: correct it, with a decimal point"
@@ -205,7 +205,9 @@ def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaul
     family, mode = _mode(where, row.get("family", ""), row["mode"])
     slack = from_print(row[columns.speed]).uncertainty if omega else 0.0
     unit = SPEED[columns.speed]
-    return Given(line, row.get("blade", ""), omega * unit, (slack or 0.0) * omega * unit, family, mode, value, inputs)
+    return UserFrequency(
+        line, row.get("blade", ""), omega * unit, (slack or 0.0) * omega * unit, family, mode, value, inputs
+    )
 
 
 def _mode(where: str, family: str, text: str) -> tuple[str, int]:
@@ -220,7 +222,7 @@ def _mode(where: str, family: str, text: str) -> tuple[str, int]:
     return family, int(text)
 
 
-def _no_repeats(rows: Sequence[Given], path: Path, measured: bool) -> None:
+def _no_repeats(rows: Sequence[UserFrequency], path: Path, measured: bool) -> None:
     seen: dict[tuple[str, float, str, int], int] = {}
     for row in rows:
         key = row.blade, row.omega, row.family, row.mode
@@ -266,6 +268,6 @@ def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[flo
                 )
 
 
-def at(row: Given, omega: float) -> bool:
+def at(row: UserFrequency, omega: float) -> bool:
     """Whether a row's speed equals ``omega`` (rad/s) within its rounding."""
     return abs(row.omega - omega) <= max(row.slack * (1 + 1e-9), 1e-9 * omega)

@@ -33,7 +33,7 @@ MISS = RANK["inconclusive"]
 
 
 @dataclass(frozen=True)
-class Change:
+class CellChange:
     """A cell in two runs; ``before`` is None for a new cell."""
 
     before: Point | None
@@ -50,7 +50,7 @@ class Change:
 
 
 @dataclass(frozen=True)
-class Gone:
+class MissingAnswer:
     """A missing answer and its replacement: the verdict on that code at that speed, or nothing."""
 
     point: Point
@@ -78,14 +78,14 @@ class Comparison:
 
     before: Entry
     after: Entry
-    moved: tuple[Change, ...]
-    worse: tuple[Change, ...]
-    better: tuple[Change, ...]
-    gone: tuple[Gone, ...]
+    moved: tuple[CellChange, ...]
+    worse: tuple[CellChange, ...]
+    better: tuple[CellChange, ...]
+    gone: tuple[MissingAnswer, ...]
     new: tuple[Point, ...]
     undetected: tuple[Detection, ...]
     missed: tuple[str, ...] = ()
-    loosened: tuple[Change, ...] = ()
+    loosened: tuple[CellChange, ...] = ()
     measured: int = 0
     properties: tuple[PropertyChange, ...] = ()
 
@@ -139,7 +139,7 @@ def compare(
         tolerance: relative change above which a frequency counts as moved.
     """
     old = {p.key: p for p in before.cells}
-    changes = [Change(old.get(p.key), p) for p in after.cells if p.verdict != "measured"]
+    changes = [CellChange(old.get(p.key), p) for p in after.cells if p.verdict != "measured"]
     moved = [c for c in changes if abs(c.moved or 0.0) > tolerance]
     worse = sorted((c for c in changes if _worse(c)), key=lambda c: -RANK[c.after.verdict])
     listed = {c.after.key for c in worse}
@@ -162,25 +162,25 @@ def compare(
     )
 
 
-def _worse(change: Change) -> bool:
+def _worse(change: CellChange) -> bool:
     """Whether the verdict is worse; for a new cell, whether it is a miss."""
     then, now = change.before, RANK.get(change.after.verdict, 0)
     return now > RANK[then.verdict] if then and then.verdict in RANK else now >= MISS
 
 
-def _loosened(change: Change) -> bool:
+def _loosened(change: CellChange) -> bool:
     """Whether the target is wider than before."""
     then, now = change.before.target if change.before else None, change.after.target
     return then is not None and now is not None and now > then * (1 + 1e-12)
 
 
-def _better(change: Change) -> bool:
+def _better(change: CellChange) -> bool:
     if change.before is None or change.before.verdict not in RANK or change.after.verdict not in RANK:
         return False
     return RANK[change.after.verdict] < RANK[change.before.verdict]
 
 
-def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
+def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[MissingAnswer]:
     """Missing answers. A code without an answer at a speed has one cell there, of mode 0, with the reason.
 
     An answer that has become a measurement counts as missing: it is no longer evidence.
@@ -190,5 +190,6 @@ def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[Gone]:
     due = [p for p in old.values() if p.value is not None and p.verdict != "measured"]
     gone = [p for p in due if p.key not in answered]
     return [
-        Gone(p, verdicts.get(p.key) or verdicts.get((p.case, p.code, p.omega, 0, "frequency", p.where))) for p in gone
+        MissingAnswer(p, verdicts.get(p.key) or verdicts.get((p.case, p.code, p.omega, 0, "frequency", p.where)))
+        for p in gone
     ]

@@ -89,7 +89,7 @@ class History:
     """Entries in the file's order, oldest first, and the numbers of truncated lines that were skipped."""
 
     entries: tuple[Entry, ...]
-    torn: tuple[int, ...] = ()
+    truncated: tuple[int, ...] = ()
 
 
 def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None) -> Entry:
@@ -156,7 +156,7 @@ def read(path: Path) -> History:
         ValueError: if a complete line is not in the format of this version; the message names file and line.
     """
     entries: list[Entry] = []
-    torn: list[int] = []
+    truncated: list[int] = []
     for number, line in enumerate(read_bytes(path, LARGEST_DATA).split(b"\n"), 1):
         try:
             if line:
@@ -169,9 +169,9 @@ def read(path: Path) -> History:
                 f"{path}: line {number}: not a run ({error}): was it written by another version, or is it another file?"
             ) from error
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
-            torn.append(number)
-    if torn and not entries:
+            truncated.append(number)
+    if truncated and not entries:
         raise ValueError(
-            f"{path}: line {torn[0]}: not JSON, nor is any other: give a file that `southwell history` wrote"
+            f"{path}: line {truncated[0]}: not JSON, nor is any other: give a file that `southwell history` wrote"
         )
-    return History(tuple(entries), tuple(torn))
+    return History(tuple(entries), tuple(truncated))

@@ -12,7 +12,7 @@ from .core_solver import qualifying
 
 
 @dataclass(frozen=True)
-class Changed:
+class ModeChange:
     """Name and frequencies (rad/s) of one mode with and without the alteration; ``wrong`` is None if no mode corresponds."""
 
     name: str
@@ -25,7 +25,7 @@ class Changed:
         return None if self.wrong is None else self.wrong / self.right - 1.0
 
 
-def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[Changed, ...]:
+def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[ModeChange, ...]:
     """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
     weight = weights(blade)
     right, wrong = aligned(right, weight), aligned(wrong, weight)
@@ -33,6 +33,6 @@ def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple
     indices, names = qualifying(energies, compare), numbered(families(energies))
     partners = [p.mode for p in pair(of_blade(right, weight), of_blade(wrong), indices)]
     return tuple(
-        Changed(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
+        ModeChange(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
         for k, p in zip(indices, partners, strict=True)
     )

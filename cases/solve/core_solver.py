@@ -26,7 +26,7 @@ from ..judge.spectrum import Spectrum
 from ..judge.uncertainty import widened
 from .refinement import Refining, solve
 
-SURE = 5e-5
+MAX_UNCERTAINTY = 5e-5
 """Core is refined until its relative uncertainty is at most this: a quarter of the limit for a code."""
 
 COARSEST, LARGEST_START, FINEST = 15, 100, 960
@@ -83,7 +83,7 @@ def refining(blade: Blade) -> Refining:
     intervals = np.diff(blade.stations) / blade.length
     shortest = float(intervals[intervals > JUMP].min(initial=1.0))
     start = min(max(COARSEST, math.ceil(1.0 / shortest - 1e-9)), LARGEST_START)
-    return Refining((start, 2 * start, 3 * start), order=4, cap=FINEST, sure=SURE, least=2.0)
+    return Refining((start, 2 * start, 3 * start), order=4, cap=FINEST, max_uncertainty=MAX_UNCERTAINTY, least=2.0)
 
 
 def as_given(source: Discretisation) -> Refining:

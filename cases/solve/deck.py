@@ -18,8 +18,8 @@ from ..judge.refined import refined
 from ..judge.results import Cell
 from ..judge.spectrum import Answer, of_blades
 from ..judge.verdict import AGREES, judge, unsigned
-from .refinement import Refining, solve
-from .works import References
+from .refinement import Refining
+from .works import References, refinements
 
 ACCURACY = 1e-6
 """Relative accuracy of core's frequencies with and without precone."""
@@ -52,14 +52,12 @@ def deck_code(
         return of_blades(answers(name, blade, runs, limits, head.version, deck))
 
     speeds, count = [omega for omega, _ in core], max(r.core.count for _, r in core)
-    compared = {omega: r.core.compared for omega, r in core}
-    refinements = solve(ask, speeds, refining, count, lambda omega, _: compared[omega])
     sizes = _precone(blade, speeds, count, effects) if blade.precone else np.zeros((len(speeds), count))
-    rows = [refined(head, omega, r, s, refining.order) for (omega, r), s in zip(core, refinements, strict=True)]
-    return joined(
-        ([_widened(cell, size, k) for cell, k in zip(cells, r.core.indices, strict=False)], levels)
-        for (cells, levels), size, (_, r) in zip(rows, sizes, core, strict=True)
-    )
+    rows: list[Rows] = []
+    for (omega, r, s), size in zip(refinements(ask, refining, core), sizes, strict=True):
+        cells, levels = refined(head, omega, r, s, refining.order)
+        rows.append(([_widened(cell, size, k) for cell, k in zip(cells, r.core.indices, strict=False)], levels))
+    return joined(rows)
 
 
 def _precone(blade: Blade, speeds: Sequence[float], count: int, effects: Effects) -> NDArray[np.float64]:

@@ -24,7 +24,7 @@ from ..judge.cells import Head, Rows, joined
 from ..judge.convergence import Compared, RefinedMode
 from ..judge.pairing import Pair
 from ..judge.reference import Converged, Reference
-from ..judge.same import same
+from ..judge.same import same_discretisation_cells
 from ..judge.spectrum import of_mechanism, of_mechanisms
 from ..judge.uncertainty import ROUNDING, Estimate
 from .reference import References
@@ -89,4 +89,6 @@ def formula(form: ClosedForm, _: Described, speeds: Sequence[float]) -> list[Mec
 def compared(head: Head, described: Described, ask: Ask, core: AtSpeeds) -> Rows:
     """Rows of a solver at the speeds at which core has a reference."""
     given = of_mechanisms(ask(described, [omega for omega, _ in core]))
-    return joined(same(head, omega, r, a, r.core.spectrum) for (omega, r), a in zip(core, given, strict=True))
+    return joined(
+        same_discretisation_cells(head, omega, r, a, r.core.spectrum) for (omega, r), a in zip(core, given, strict=True)
+    )

@@ -14,7 +14,7 @@ from ...references.sampling import sample
 from ..input.schema import Discretisation
 from ..judge.cells import Head
 from ..judge.convergence import follow
-from ..judge.printed import Coarse, excused, printed
+from ..judge.printed import Coarse, explained_by_discretisation, printed
 from ..judge.reference import Reference
 from ..judge.results import Cell, Level
 from ..judge.spectrum import Answer, of_blades
@@ -136,7 +136,7 @@ def rows(
                     cell = printed(head, omega, i, reference, value, note)
                     if series.grounds and cell.verdict == "pass":
                         cell = replace(cell, reason=f"target {unsigned(head.target)}: {series.grounds}")
-                    cells.append(excused(cell, coarse[i], source.what) if source else cell)
+                    cells.append(explained_by_discretisation(cell, coarse[i], source.what) if source else cell)
     return cells, []
 
 

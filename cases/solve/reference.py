@@ -22,7 +22,7 @@ Solve = Callable[[Effects, Iterable[float]], dict[float, Converged | Failure]]
 """Core with these effects, at these speeds at least: rad/s → modes."""
 
 
-def felt(effects: Effects, blade: Blade, omega: float = 1.0) -> Effects:
+def relevant_effects(effects: Effects, blade: Blade, omega: float = 1.0) -> Effects:
     """The effects without irrelevant omissions: an effect that cannot change this blade at this speed is not missing.
 
     A blade without rotary inertia cannot lack it; at rest only rotary inertia can be missing.
@@ -67,9 +67,10 @@ def _absent(omega: float, failure: Failure) -> Failure:
 def _references(
     blade: Blade, speeds: Sequence[float], target: float, kept: Effects, solve: Solve
 ) -> list[Reference | Failure]:
-    felt_at = {omega: felt(kept, blade, omega) for omega in speeds}
+    relevant_at = {omega: relevant_effects(kept, blade, omega) for omega in speeds}
     reduced = {
-        omega: solve(effects, [o for o in speeds if felt_at[o] == effects])[omega] for omega, effects in felt_at.items()
+        omega: solve(effects, [o for o in speeds if relevant_at[o] == effects])[omega]
+        for omega, effects in relevant_at.items()
     }
     full = solve(ALL_EFFECTS, ())
     solved = {omega: answer for omega, answer in reduced.items() if not isinstance(answer, Failure)}
@@ -77,7 +78,7 @@ def _references(
     shifted = [omega for omega, answer in solved.items() if _shifted(answer, partners[omega][0], target)]
     changes: dict[float, list[list[Effect]]] = {omega: [[] for _ in answer.modes] for omega, answer in solved.items()}
     for name in (f.name for f in fields(kept)):  # each effect alone
-        lacking = [omega for omega in shifted if not getattr(felt_at[omega], name)]
+        lacking = [omega for omega in shifted if not getattr(relevant_at[omega], name)]
         alone = solve(replace(ALL_EFFECTS, **{name: False}), lacking)
         for omega in lacking:
             without, _ = _partners(solved[omega], alone[omega])

@@ -17,7 +17,7 @@ from ..judge.spectrum import Answer, Spectrum
 
 Ask = Callable[[Sequence[Run]], list[Answer]]
 
-SURE = 2e-4
+MAX_UNCERTAINTY = 2e-4
 """A code is refined until its relative uncertainty is at most this."""
 
 LEAST, MOST = 4 / 3, 2.0
@@ -30,7 +30,7 @@ AIM = 0.5
 
 @dataclass(frozen=True)
 class Refining:
-    """Refinement of a solver: all ``levels`` first; then finer ones, up to ``cap``, until its uncertainty is ``sure``.
+    """Refinement of a solver: all ``levels`` first; then finer ones, up to ``cap``, until ``max_uncertainty`` is met.
 
     Further ones are multiples of the first, as fine as the ``order`` of convergence requires: from ``least`` to ``MOST`` times
     the one before. ``bracket``: the solver gives an error bound, ``Spectrum.uncertainty``, so that no refinement is needed.
@@ -39,7 +39,7 @@ class Refining:
     levels: tuple[int, ...]
     order: int
     cap: int
-    sure: float = SURE
+    max_uncertainty: float = MAX_UNCERTAINTY
     bracket: bool = False
     least: float = LEAST
 
@@ -79,7 +79,9 @@ def solve(
                     failed.pop(omega, None)
         open_ = [omega for omega in speeds if omega not in failed]
         unsure = {omega: _unsure(solved[omega], compared(omega, solved[omega]), refining) for omega in open_}
-        finer = {omega: _finer(finest[omega], u, refining) for omega, u in unsure.items() if u > refining.sure}
+        finer = {
+            omega: _finer(finest[omega], u, refining) for omega, u in unsure.items() if u > refining.max_uncertainty
+        }
         runs = sorted(
             ((omega, n, count) for omega, n in finer.items() if n >= refining.least * finest[omega]), key=lambda r: r[1]
         )
@@ -96,7 +98,7 @@ def _unsure(answers: Sequence[Spectrum], compared: Compared, refining: Refining)
 
 def _finer(finest: int, uncertainty: float, refining: Refining) -> int:
     """The number of elements after ``finest``, at most the cap."""
-    ratio = (uncertainty / (AIM * refining.sure)) ** (1.0 / refining.order) if refining.order else MOST
+    ratio = (uncertainty / (AIM * refining.max_uncertainty)) ** (1.0 / refining.order) if refining.order else MOST
     first = refining.levels[0]
     multiple = math.ceil(finest * min(max(ratio, refining.least), MOST) / first - 1e-9)
     return min(first * multiple, refining.cap)

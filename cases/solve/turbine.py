@@ -24,9 +24,9 @@ from ..judge.refined import refined
 from ..judge.spectrum import Answer, Spectrum
 from ..judge.uncertainty import ROUNDING, Estimate
 from .reference import References
-from .refinement import Refining, solve
+from .refinement import Refining
 from .works import References as AtSpeeds
-from .works import compared_with
+from .works import refinements
 
 MOTION = "machine"
 """The motion of every mode: each part of a turbine moves in each."""
@@ -92,9 +92,7 @@ def of_turbines(given: Sequence[turbines.TurbineModes | Failure]) -> list[Answer
 def refined_code(head: Head, name: str, turbine: Turbine, refining: Refining, limits: Limits, core: AtSpeeds) -> Rows:
     """Rows of a code, refined until it can be judged."""
     ask = partial(_asked, name, turbine, limits, head.version)
-    count = max(r.core.count for _, r in core)
-    refinements = solve(ask, [omega for omega, _ in core], refining, count, compared_with(core))
-    return joined(refined(head, omega, r, s, refining.order) for (omega, r), s in zip(core, refinements, strict=True))
+    return joined(refined(head, omega, r, s, refining.order) for omega, r, s in refinements(ask, refining, core))
 
 
 def _asked(name: str, turbine: Turbine, limits: Limits, version: str, runs: Sequence[Run]) -> list[Answer]:

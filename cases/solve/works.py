@@ -1,6 +1,6 @@
 """What a column solves: the answers of a code, or of core in another way, and their rows against core's references."""
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 from ...core.blade import Blade
@@ -11,15 +11,15 @@ from ...references.protocol.worker import Run as Asked
 from ...references.protocol.worker import answers
 from ..input.schema import Discretisation
 from ..judge.cells import Head, Rows, join, joined
-from ..judge.convergence import Compared
-from ..judge.printed import given
+from ..judge.convergence import Refinements
+from ..judge.printed import source_discretisation_cells
 from ..judge.reference import Reference
 from ..judge.refined import refined
-from ..judge.same import rounding, same
-from ..judge.spectrum import Answer, Spectrum, of_blades
+from ..judge.same import rounding, same_discretisation_cells
+from ..judge.spectrum import Answer, of_blades
 from . import core_solver, paper
 from .copies import copied
-from .refinement import Refining, solve
+from .refinement import Ask, Refining, solve
 
 ELEMENTS = 20
 """Number of elements of the paper's equations, as of its blade: their dense matrices take the cube of it. Codes with core's
@@ -37,13 +37,9 @@ def refined_code(
     def ask(runs: Sequence[Asked]) -> list[Answer]:
         return of_blades(answers(name, blade, runs, limits, head.version))
 
-    count = max(r.core.count for _, r in core)
-    refinements = solve(ask, [omega for omega, _ in core], refining, count, compared_with(core))
-    cells, levels = joined(
-        refined(head, omega, r, s, refining.order, refining.bracket)
-        for (omega, r), s in zip(core, refinements, strict=True)
-    )
-    first = [(omega, r, s.answers[0]) for (omega, r), s in zip(core, refinements, strict=True) if s.answers]
+    solved = refinements(ask, refining, core)
+    cells, levels = joined(refined(head, omega, r, s, refining.order, refining.bracket) for omega, r, s in solved)
+    first = [(omega, r, s.answers[0]) for omega, r, s in solved if s.answers]
     if head.shares in ("nothing", "undeclared") and (copy := copied(blade, effects, first)):
         why = (
             f"equals the answers of Southwell's own solver with {copy[0]} elements to {copy[1]:.0e}: its discretisation, not "
@@ -60,11 +56,8 @@ def as_in_source(head: Head, blade: Blade, source: Discretisation, core: Referen
         return of_blades(core_solver.answers(blade, runs, source.mass, source.stiffness, source.effects))
 
     refining = core_solver.as_given(source)
-    count = max(r.core.count for _, r in core)
-    refinements = solve(ask, [omega for omega, _ in core], refining, count, compared_with(core))
-    return joined(
-        given(head, omega, r, s, refining.order, source.what) for (omega, r), s in zip(core, refinements, strict=True)
-    )
+    solved = refinements(ask, refining, core)
+    return joined(source_discretisation_cells(head, omega, r, s, refining.order, source.what) for omega, r, s in solved)
 
 
 def same_code(
@@ -88,7 +81,9 @@ def same_code(
     theirs = of_blades(answers(name, blade, runs(elements), limits, head.version))
     noises = [rounding(a, others) for a, *others in zip(core_answers, *again, strict=True)]
     rows = zip(core, theirs, core_answers, noises, strict=True)
-    return joined(same(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows)
+    return joined(
+        same_discretisation_cells(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows
+    )
 
 
 def papers_equations(head: Head, blade: Blade, core: References, elements: int = ELEMENTS) -> Rows:
@@ -111,10 +106,12 @@ def papers_equations(head: Head, blade: Blade, core: References, elements: int =
         if not isinstance(core_answer, Failure):
             break
     (literal,) = of_blades([paper.answer(blade, run, stiffness)])
-    return same(head, omega, reference, literal, core_answer)
+    return same_discretisation_cells(head, omega, reference, literal, core_answer)
 
 
-def compared_with(core: References) -> Callable[[float, Sequence[Spectrum]], Compared]:
-    """The modes requested from a solver: core's modes, whatever the solver answered."""
-    by_speed = {omega: r.core.compared for omega, r in core}
-    return lambda omega, _: by_speed[omega]
+def refinements(ask: Ask, refining: Refining, core: References) -> list[tuple[float, Reference, Refinements]]:
+    """Refinements of a solver at each of core's speeds, which are to converge for the modes that core has there."""
+    compared = {omega: r.core.compared for omega, r in core}
+    count = max(r.core.count for _, r in core)
+    solved = solve(ask, list(compared), refining, count, lambda omega, _: compared[omega])
+    return [(omega, r, s) for (omega, r), s in zip(core, solved, strict=True)]

@@ -11,7 +11,7 @@ from msgspec.structs import replace
 from ...core.blade import Blade
 from ...references.protocol.process import raised
 from ..campbell.sweep import Named, sweep
-from ..input.changes import Change, apply
+from ..input.changes import PropertyChange, apply
 from ..input.errors import CaseError
 
 INTERNAL = "internal error of southwell: "
@@ -33,7 +33,7 @@ class Task:
 
     blade: Blade
     sample: int
-    changes: tuple[Change, ...]
+    changes: tuple[PropertyChange, ...]
     speeds: tuple[float, ...]
     modes: int
     elements: int | None

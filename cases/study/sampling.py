@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from scipy.special import ndtri
 from scipy.stats import qmc
 
-from ..input.changes import PROPERTIES, UNITS, Change
+from ..input.changes import PROPERTIES, UNITS, PropertyChange
 from ..input.errors import CaseError, nearest
 from ..input.toml import convert
 
@@ -116,7 +116,7 @@ def sample(properties: Mapping[str, Distribution], samples: int, seed: int) -> A
     return np.stack([distribution.quantile(unit[:, k]) for k, distribution in enumerate(properties.values())], axis=1)
 
 
-def changes(properties: Mapping[str, Distribution], values: Array) -> tuple[Change, ...]:
+def changes(properties: Mapping[str, Distribution], values: Array) -> tuple[PropertyChange, ...]:
     """The changes of a blade for one sample (properties,)."""
     given = zip(properties.items(), values.tolist(), strict=True)
-    return tuple(Change(name, value, not distribution.absolute) for (name, distribution), value in given)
+    return tuple(PropertyChange(name, value, not distribution.absolute) for (name, distribution), value in given)

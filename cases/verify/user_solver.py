@@ -29,10 +29,10 @@ from ..plan.request import Execution, Request
 from ..plan.subject import NOT_CHECKED, PropertyChecks
 from ..plan.user_results import UserResults
 from ..solve import published_tables
-from ..solve.reference import felt, references
-from ..solve.refinement import Refining, solve
-from ..solve.works import References, compared_with
-from .controls import SAME_MODE, Wrong
+from ..solve.reference import references, relevant_effects
+from ..solve.refinement import Refining
+from ..solve.works import References, refinements
+from .fault_effects import SAME_MODE, FaultEffect
 from .pipeline import verify
 
 
@@ -106,7 +106,7 @@ def run(solver: UserSolver, case: Case, variant: Variant) -> Run:
 
 def _column(solver: UserSolver, variant: Variant, compare: Compare) -> Column:
     head = Head(variant.name, solver.name, "", "code", solver.target or compare.target, "nothing")
-    effects = felt(solver.effects, variant.blade)
+    effects = relevant_effects(solver.effects, variant.blade)
     if why := solver.unsupported(variant.blade):
         return Column(solver.name, effects, head, absent_work(head, "not applicable", why), solves=False)
     return Column(solver.name, effects, head, partial(_rows, head, solver, variant, compare), bundled=False)
@@ -116,15 +116,8 @@ def _rows(head: Head, solver: UserSolver, variant: Variant, compare: Compare, co
     """Cells of a solver at the speeds of core's references, with those against the printed numbers that core passes."""
     finest = 4 * solver.levels[-1]
     refining = Refining(solver.levels, solver.order, finest) if solver.refines else Refining((1,), 0, 1, bracket=True)
-    count = max(r.core.count for _, r in core)
-    speeds = [omega for omega, _ in core]
-    refinements = solve(
-        lambda runs: _answers(solver, variant.blade, runs), speeds, refining, count, compared_with(core)
-    )
-    cells, levels = joined(
-        refined(head, omega, reference, at_speed, refining.order, refining.bracket)
-        for (omega, reference), at_speed in zip(core, refinements, strict=True)
-    )
+    solved = refinements(partial(_answers, solver, variant.blade), refining, core)
+    cells, levels = joined(refined(head, omega, r, s, refining.order, refining.bracket) for omega, r, s in solved)
     return cells + _printed(cells, solver, variant, compare, core), levels
 
 
@@ -167,10 +160,10 @@ def _printed(
 ) -> list[Cell]:
     """The solver's frequencies against the printed numbers that core passes with the table's and with the solver's effects."""
     speeds = [omega for omega, _ in core]
-    solved = {felt(solver.effects, variant.blade): core}
+    solved = {relevant_effects(solver.effects, variant.blade): core}
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
-        effects = felt(table.series.effects, variant.blade)
+        effects = relevant_effects(table.series.effects, variant.blade)
         if effects not in solved:
             answers = zip(speeds, references(variant.blade, speeds, compare, [effects])[effects], strict=True)
             solved[effects] = [(omega, r) for omega, r in answers if not isinstance(r, Failure)]
@@ -205,7 +198,7 @@ def _compared(cell: Cell, number: Cell, printed: float) -> Cell:
     )  # fmt: skip
 
 
-def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
+def alike(cell: Cell, effects: Sequence[FaultEffect]) -> str:
     """The fault in core that reproduces a wrong frequency; empty if none does.
 
     It must explain at least nine tenths of the difference.
@@ -213,13 +206,13 @@ def alike(cell: Cell, wrongs: Sequence[Wrong]) -> str:
     if cell.value is None or cell.reference is None or cell.difference is None:
         return ""
     candidates: list[tuple[float, str]] = []
-    for wrong in wrongs:
-        for m in wrong.modes:
+    for fault_effect in effects:
+        for m in fault_effect.modes:
             same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < SAME_MODE
-            if wrong.omega == cell.omega and same and m.change is not None:
+            if fault_effect.omega == cell.omega and same and m.change is not None:
                 rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):
                     size = f"({percent(m.change)}; {unsigned(rest)} from it)"
-                    likeness = f"as Southwell's own solver with this fault: {wrong.fault} {size}"
+                    likeness = f"as Southwell's own solver with this fault: {fault_effect.fault} {size}"
                     candidates.append((abs(rest), likeness))
     return min(candidates)[1] if candidates else ""

@@ -3,13 +3,13 @@
 from collections.abc import Sequence
 from math import isnan
 
-from ...cases.campbell.changes import Changed
+from ...cases.campbell.changes import ModeDifference
 from ..shared.certain import certain
 from ..shared.units import Units
 from .tables import Sheet
 
 
-def sheet(changed: Sequence[Changed], against: str, units: Units) -> Sheet:
+def sheet(changed: Sequence[ModeDifference], against: str, units: Units) -> Sheet:
     """The table: one row per mode and speed with both frequencies and the relative change.
 
     Args:

@@ -7,7 +7,7 @@ from matplotlib.lines import Line2D
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.judge.measured import COVERAGE
-from ...cases.plan.user_results import Given, UserResults
+from ...cases.plan.user_results import UserFrequency, UserResults
 from ..shared.style import INK, MARKERS
 from ..shared.units import Units
 
@@ -57,7 +57,7 @@ def outside(user_results: Sequence[UserResults], diagram: Campbell, top: float) 
     return f"{n} of {len(every)} added points outside" if n else ""
 
 
-def _of(results: UserResults, blade: str) -> list[Given]:
+def _of(results: UserResults, blade: str) -> list[UserFrequency]:
     return [row for row in results.rows if row.blade in ("", blade)]
 
 

@@ -13,7 +13,7 @@ from ...cases.input.errors import CaseError
 from ...cases.input.toml import document
 from ...cases.judge.quantities import QUANTITIES
 from ...cases.judge.results import described
-from ...cases.regression.gate import MISS, RANK, Change, Comparison, Gone
+from ...cases.regression.gate import MISS, RANK, CellChange, Comparison, MissingAnswer
 from ...cases.regression.history import Detection, Entry, Point
 from ...cases.regression.properties import PropertyChange
 from ..shared import table_columns
@@ -80,7 +80,7 @@ def _units(case: str, units: ByCase) -> Units:
     return units.get(case, RAD_S)
 
 
-def _loosened(change: Change, units: ByCase) -> Row:
+def _loosened(change: CellChange, units: ByCase) -> Row:
     was = change.before.target if change.before else None
     targets = [f"{100 * t:.3g} %" if t else "" for t in (was, change.after.target)]
     return _place(change.after, units) | {
@@ -90,7 +90,7 @@ def _loosened(change: Change, units: ByCase) -> Row:
     }
 
 
-def _change(change: Change, units: ByCase) -> Row:
+def _change(change: CellChange, units: ByCase) -> Row:
     before, after = change.before, change.after
     was = before.verdict if before else "not there"
     of_case = _units(after.case, units)
@@ -111,7 +111,7 @@ def _digits(point: Point | None, units: Units) -> str:
     return f"{point.value:.12g} {QUANTITIES[point.quantity].unit}".rstrip()
 
 
-def _gone(gone: Iterable[Gone], units: ByCase) -> list[Row]:
+def _gone(gone: Iterable[MissingAnswer], units: ByCase) -> list[Row]:
     """One row per case and code, with the missing speeds and modes."""
     rows = []
     for (case, code), group in groupby(sorted(gone, key=_column), key=_column):
@@ -130,7 +130,7 @@ def _gone(gone: Iterable[Gone], units: ByCase) -> list[Row]:
     return rows
 
 
-def _column(gone: Gone) -> tuple[str, str]:
+def _column(gone: MissingAnswer) -> tuple[str, str]:
     return gone.point.case, gone.point.code
 
 
@@ -203,7 +203,7 @@ def annotations(gate: Comparison, folder: Path, units: ByCase) -> list[str]:
     return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in rows]
 
 
-def _became(change: Change, units: ByCase) -> str:
+def _became(change: CellChange, units: ByCase) -> str:
     was = change.before.verdict if change.before else "not there"
     return f"{was} → {change.after.verdict}, {_digits(change.after, _units(change.after.case, units))}"
 

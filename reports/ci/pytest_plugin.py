@@ -111,7 +111,7 @@ def _all() -> "list[Case]":
     """Every case whose files are present."""
     from ...cases.input import library
 
-    present, _ = library.everything()
+    present, _ = library.load_all()
     return list(present.values())
 
 
@@ -165,7 +165,7 @@ class CellUnderTest:
 
     def _message(self, cell: "Cell") -> str:
         """The message of a failure: the numbers, the verdict, and the most similar fault."""
-        from ...cases.verify import controls
+        from ...cases.verify import fault_effects
         from ...cases.verify.user_solver import alike
 
         where = f"{cell.case} at {cell.omega:.6g} rad/s, mode {cell.mode} ({cell.family})" if cell.mode else cell.case
@@ -176,7 +176,7 @@ class CellUnderTest:
         like = (
             ""
             if cell.difference is None
-            else alike(cell, self._once("faults", partial(controls.solve, variant, compare)))
+            else alike(cell, self._once("faults", partial(fault_effects.solve, variant, compare)))
         )
         text = f"{where}: {self.chosen.solver.name}: {answer}{right}{source}: {cell.verdict}: {cell.reason}"
         return f"{text}; {like}" if like else text

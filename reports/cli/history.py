@@ -84,7 +84,7 @@ def load(file: Path) -> History:
         ) from error
     except ValueError as error:
         raise CaseError(str(error)) from error
-    for number in recorded.torn:
+    for number in recorded.truncated:
         print(f"southwell: {file}: line {number}: truncated, ignored", file=sys.stderr)
     return recorded
 

@@ -24,7 +24,7 @@ from .errors import UsageError
 def cases() -> int:
     """List the cases that come with the package."""
     rows = []
-    loaded, absent = library.everything()
+    loaded, absent = library.load_all()
     for name, case in loaded.items():
         first, *_ = settings(case)
         blades = ", ".join(v.name.partition("/")[2] for v in case.variants) if len(case.variants) > 1 else "1"

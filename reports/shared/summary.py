@@ -9,7 +9,7 @@ from typing import get_args
 
 from ...cases.judge.results import Cell, Run, Verdict
 from ...cases.judge.verdict import unsigned
-from ...cases.judge.witnesses import short
+from ...cases.judge.witnesses import under_confirmed
 from .statuses import FAILED, INCOMPLETE, PASSED
 
 SYMBOL: dict[Verdict, str] = {
@@ -77,7 +77,7 @@ def status(run: Run) -> int:
         return INCOMPLETE
     blind = any(control.missed for control in run.controls)
     bad = any(c.verdict in BAD for c in run.cells) or any(c.verdict == "fail" for c in run.property_checks)
-    return FAILED if not compared(run.cells) or blind or bad or short(run) else PASSED
+    return FAILED if not compared(run.cells) or blind or bad or under_confirmed(run) else PASSED
 
 
 def worst_verdict(cells: Iterable[Cell]) -> Verdict:

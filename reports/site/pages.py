@@ -78,7 +78,7 @@ def report(folder: Path) -> Pages:
 
 def cases(folder: Path | None = None) -> Pages:
     """One page per case that comes with the package, with its results and the figures of a run in ``folder``, and an index."""
-    present, absent = library.everything()
+    present, absent = library.load_all()
     subjects: dict[str, Sequence[Subject]] = {case.name: blades(case) for case in present.values()}
     subjects |= {name: [mechanism.subject(library.mechanism(name))] for name in library.mechanisms()}
     subjects |= {name: [turbine.of_case(library.turbine(name))] for name in library.turbines()}

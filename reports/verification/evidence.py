@@ -5,7 +5,7 @@ from typing import Literal
 
 from ...cases.judge.measured import least, visible
 from ...cases.judge.results import Cell, Run, Verdict
-from ...cases.judge.witnesses import INDEPENDENT, groups, short, witnesses
+from ...cases.judge.witnesses import INDEPENDENT, groups, under_confirmed, witnesses
 from ..shared import summary
 from ..shared.summary import SYMBOL
 from ..shared.units import BY_KEY, RAD_S, Units
@@ -82,7 +82,7 @@ def _unconfirmed(run: Run) -> list[str]:
     """Blades with fewer independent groups than required, or with none although codes declare their origin."""
     origins = {o.case for o in run.origins}
     bare = [case for case in summary.cases(run) if case in origins and not groups(witnesses(run, case))]
-    return list(dict.fromkeys([*(s.case for s in short(run)), *bare]))
+    return list(dict.fromkeys([*(s.case for s in under_confirmed(run)), *bare]))
 
 
 def answer(run: Run) -> str:

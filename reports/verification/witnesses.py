@@ -4,7 +4,7 @@ from collections.abc import Sequence
 
 from ...cases.judge.results import Cell, Run
 from ...cases.judge.verdict import unsigned
-from ...cases.judge.witnesses import FINE, Witness, engines, foreign_theory, groups, short, witnesses
+from ...cases.judge.witnesses import FINE, Witness, engines, foreign_theory, groups, under_confirmed, witnesses
 from ..shared import summary
 
 
@@ -92,5 +92,5 @@ def missing(run: Run) -> list[str]:
     """One line per blade that fewer groups confirm than its case requires."""
     return [
         f"{s.case}: {s.groups} of {s.required} required independent groups agree: install or add codes, or lower --witnesses"
-        for s in short(run)
+        for s in under_confirmed(run)
     ]

@@ -280,7 +280,7 @@ def test_the_solver_has_these_terms_on_closed_loops(name: str) -> None:
 # blades ---------------------------------------------------------------------------------------------------------------
 
 BLADES: dict[str, tuple[Case, Variant]] = {
-    variant.name: (case, variant) for case in library.everything()[0].values() for variant in case.variants
+    variant.name: (case, variant) for case in library.load_all()[0].values() for variant in case.variants
 }
 
 

@@ -26,7 +26,7 @@ needs_run = pytest.mark.skipif(
 
 RPM = np.pi / 30
 
-CASES = {variant.name: (case, variant) for case in library.everything()[0].values() for variant in case.variants}
+CASES = {variant.name: (case, variant) for case in library.load_all()[0].values() for variant in case.variants}
 
 
 @pytest.fixture(scope="module")
@@ -54,7 +54,7 @@ def within_target(cell: Cell) -> bool:
 
 def test_every_code_and_every_blade_is_in_the_table() -> None:
     assert set(CODES) == set(BLADE_CODES)
-    assert set(BLADES) == set(CASES) | set(library.everything()[1])
+    assert set(BLADES) == set(CASES) | set(library.load_all()[1])
 
 
 @needs_run

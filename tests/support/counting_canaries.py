@@ -5,7 +5,7 @@ from typing import Any
 from southwell.cases.faults.seeding import Seam
 from southwell.cases.judge import witnesses
 from southwell.cases.judge.results import Cell, Origin, Run, Setting
-from southwell.cases.judge.witnesses import groups, short
+from southwell.cases.judge.witnesses import groups, under_confirmed
 from southwell.references.protocol.interface import CORE
 
 CASE = "canary"
@@ -62,8 +62,8 @@ def canaries() -> list[str]:
         result = len(groups(witnesses.witnesses(run, CASE)))
         if result != expected:
             wrong.append(f"groups: {what}: {result} counted, not {expected}")
-    alone = short(_run(ONE, required=2))
-    if [(s.groups, s.required) for s in alone] != [(1, 2)] or short(_run(ONE, TWO, required=2)):
+    alone = under_confirmed(_run(ONE, required=2))
+    if [(s.groups, s.required) for s in alone] != [(1, 2)] or under_confirmed(_run(ONE, TWO, required=2)):
         wrong.append("groups: one of two required is not reported as too few")
     return wrong
 
@@ -74,7 +74,7 @@ def _without(field: str) -> Any:
 
 FAULTS: dict[str, Seam] = {
     "codes that share an engine or a theory count twice": (witnesses, "_linked", lambda right: lambda a, b: False),
-    "shared rotation terms are ignored": (witnesses, "MATTERS", _without("rotation")),
+    "shared rotation terms are ignored": (witnesses, "INDEPENDENCE_FIELDS", _without("rotation")),
     "codes with core's discretisation or frames count": (
         witnesses,
         "_kind",

@@ -17,7 +17,7 @@ import numpy as np
 from ....core.blade import Blade, BladeError
 from .. import files
 from ..errors import CaseError
-from ..names import LONGEST, named
+from ..names import MAX_NAME, named
 from .source import BladeFile, Mount, Reading, Source, Unused
 
 __all__ = ["FORMATS", "BladeFile", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
@@ -65,7 +65,7 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
                 raise CaseError(f"{path}: {option}: {read.source.format} has none, {format} has: leave it out")
     blade = read.blade
     if not named(blade.name):
-        raise CaseError(f"{path}: name: {blade.name[:LONGEST]!r}: a name is one line of at most {LONGEST} characters")
+        raise CaseError(f"{path}: name: {blade.name[:MAX_NAME]!r}: a name is one line of at most {MAX_NAME} characters")
     if np.abs(blade.twist).max() > np.pi:
         k = int(np.abs(blade.twist).argmax())
         raise CaseError(

@@ -27,7 +27,7 @@ FINE = 2001
 LENGTHS = 5e-3
 """Largest distance of the last station from the end of c2_def, as a fraction of the length, for the same blade."""
 
-SAME = 1e-6
+MIN_SPACING = 1e-6
 """Distance, as a fraction of the length, within which a section of c2_def coincides with a station."""
 
 _DEEP = 10
@@ -195,7 +195,7 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     s = r * (arc[-1] / r[-1])
     own = np.interp(c2[:, 2], z, arc)
     apart = np.abs(own[:, None] - s).min(axis=1)
-    s = np.union1d(s, own[apart > SAME * arc[-1]])
+    s = np.union1d(s, own[apart > MIN_SPACING * arc[-1]])
     at = spline(np.interp(s, arc, z))
     curve, twist = at[:, [2, 0, 1]], np.radians(at[:, 3])
     fine = spline(z)

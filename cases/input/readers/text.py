@@ -15,7 +15,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from .. import files
 from ..errors import CaseError
-from ..toml import LARGEST
+from ..toml import MAX_NUMBER
 
 Array = NDArray[np.float64]
 
@@ -113,7 +113,7 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
 
 def believable(value: float) -> bool:
     """Whether a number is finite and not implausibly large in any unit."""
-    return abs(value) <= LARGEST
+    return abs(value) <= MAX_NUMBER
 
 
 @dataclass(frozen=True)

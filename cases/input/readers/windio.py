@@ -47,7 +47,7 @@ STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
 FAR = 1.0
 """Largest plausible twist, rad: windIO 1 files with a larger value give it in degrees, as in windIO 2."""
 
-SAME = 1e-9
+MIN_SPACING = 1e-9
 """Grid points closer than this fraction of the length coincide."""
 
 
@@ -130,13 +130,13 @@ def _axis(layout: Layout) -> Axis:
     """The curve and the twist in degrees, in windIO's axes."""
     parts = [_curve(layout.axis.get(key)) for key in "xyz"] + [_curve(layout.twist)]
     grid = np.sort(np.concatenate([part.x for part in parts]))
-    grid = grid[np.append(True, np.diff(grid) > SAME)]
+    grid = grid[np.append(True, np.diff(grid) > MIN_SPACING)]
     x, y, z, twist = (part(grid) for part in parts)
     start = np.abs([x[0], y[0], z[0]]).max()
-    if start > SAME * z[-1]:
+    if start > MIN_SPACING * z[-1]:
         raise CaseError(f"{layout.axis.at}: begins {start:g} m from the root: give it from the root, at 0, 0, 0")
     z[0] = 0.0
-    if (flat := np.diff(z) <= SAME * np.abs(z).max()).any():
+    if (flat := np.diff(z) <= MIN_SPACING * np.abs(z).max()).any():
         k = int(np.argmax(flat)) + 1
         raise CaseError(f"{layout.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, drop duplicates")
     values = np.stack([x - x[0], y - y[0], twist * layout.degrees], axis=1)
@@ -157,7 +157,7 @@ def _grid(values_on_grid: Field) -> Array:
     if len(grid) < 2:
         raise CaseError(f"{field.at}: {len(grid)} points: a blade needs at least a root and a tip")
     for k, end in ((0, 0.0), (-1, 1.0)):
-        if abs(grid[k] - end) > SAME:
+        if abs(grid[k] - end) > MIN_SPACING:
             raise CaseError(f"{field.item(k)}: {grid[k]:g}: fractions of the length: begin at 0 and end at 1")
     if (np.diff(grid) <= 0).any():
         k = int(np.argmax(np.diff(grid) <= 0)) + 1
@@ -263,7 +263,7 @@ def _checked(matrices: Array, wrong: Callable[[Array], str | None], field: Field
 def _together(grids: list[Array], matrices: list[Array]) -> tuple[Array, Array, Array]:
     """Interpolate both matrices to the union of the two grids."""
     eta = np.sort(np.concatenate(grids))
-    eta = eta[np.append(True, np.diff(eta) > SAME)]
+    eta = eta[np.append(True, np.diff(eta) > MIN_SPACING)]
     eta[-1] = 1.0
     first, second = (make_interp_spline(grid, m, k=1)(eta) for grid, m in zip(grids, matrices, strict=True))
     return eta, first, second
@@ -278,7 +278,7 @@ def _tip(elastic: Field) -> Array:
     field = point_mass.get("mass")
     at, masses = point_mass.get("grid").numbers(), field.numbers()
     for k, (where, m) in enumerate(zip(at, masses, strict=True)):
-        if m and abs(where - 1) > SAME:
+        if m and abs(where - 1) > MIN_SPACING:
             raise CaseError(
                 f"{field.item(k)}: {m:g} kg at grid {where:g}: only a point mass at the tip is supported: distribute it in mass"
             )

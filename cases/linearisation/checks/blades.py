@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 MIN_DIFFERENCE = 0.01
 """Smallest difference between blades that is reported, relative to the entry."""
 
-MATTERS = 1e-3
+MIN_DIFFERENCE = 1e-3
 """Couplings smaller than this, relative to the stiffnesses that they couple, are left out."""
 
 
@@ -55,7 +55,7 @@ def differences(each: AzimuthSet) -> tuple[Difference, ...]:
             half = float(np.max([each.half[:, v, q].max() for v, q in zip(rows, columns, strict=True)]))
             size = float(np.sqrt(diagonal[i] * diagonal[j]))
             mean = np.abs(values).mean()
-            if not size or mean < MATTERS * size:
+            if not size or mean < MIN_DIFFERENCE * size:
                 continue
             found = _odd_blade(psi, values, half)
             if found:

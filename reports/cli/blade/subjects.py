@@ -5,7 +5,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ....cases.input import changes, readers
-from ....cases.input.changes import Change
+from ....cases.input.changes import PropertyChange
 from ....cases.input.errors import CaseError
 from ....cases.input.library import is_blade_file, select
 from ....cases.input.readers import Mount, Unused
@@ -50,7 +50,7 @@ class Subject:
     files: tuple[Path, ...] = ()
 
 
-def changed(chosen: Sequence[Subject], given: Sequence[Change]) -> list[Subject]:
+def changed(chosen: Sequence[Subject], given: Sequence[PropertyChange]) -> list[Subject]:
     """The subjects with changed properties; ``about`` lists the changes.
 
     Raises:

@@ -83,7 +83,7 @@ def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPat
 
 
 def test_what_needs_a_code_that_is_absent_is_not_run_and_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(seeding, "known", lambda trial: tuple(Description(name, name) for name in trial.codes))
+    monkeypatch.setattr(seeding, "descriptions", lambda trial: tuple(Description(name, name) for name in trial.codes))
     (control,) = table.run(["no hub radius"])
     assert (control.needs, control.missed) == ("exact-beam", False)
 

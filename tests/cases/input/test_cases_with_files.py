@@ -32,7 +32,7 @@ def test_without_the_files_it_says_what_to_set(name: str, monkeypatch: pytest.Mo
     monkeypatch.setenv(FILES, str(tmp_path))
     with pytest.raises(FilesMissingError, match=f"not in {FILES}={tmp_path}"):
         library.load(name)
-    assert set(library.everything()[1]) == set(NAMES)
+    assert set(library.load_all()[1]) == set(NAMES)
 
 
 def test_a_file_that_is_there_and_damaged_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

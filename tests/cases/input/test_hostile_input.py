@@ -329,7 +329,7 @@ def test_results_that_no_run_writes(folder: Path, old: str, new: str, phrase: st
 def test_bad_utf8_in_a_history_is_a_torn_line(folder: Path) -> None:
     path = folder / "history.jsonl"
     path.write_bytes(path.read_bytes() + b'{"commit":"\xff\xfe"}\n')
-    assert history.read(path).torn == (2,)
+    assert history.read(path).truncated == (2,)
 
 
 def test_where_names_are_impossible(folder: Path) -> None:

@@ -227,7 +227,7 @@ def test_a_missing_file_is_named(tmp_path: Path) -> None:
 
 def test_every_shipped_case_is_read_and_named_as_its_file() -> None:
     assert set(library.names()) >= {"park-cantilever", "park-blade", "yoo-shin-chordwise", "wright-flapwise"}
-    for name, case in library.everything()[0].items():
+    for name, case in library.load_all()[0].items():
         assert case.name == name
         assert all(v.blade.name == v.name for v in case.variants)
 

@@ -10,7 +10,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.schema import decode
 from southwell.cases.input.toml import document
 from southwell.cases.judge.results import Origin, Run, Setting
-from southwell.cases.judge.witnesses import groups, short, witnesses
+from southwell.cases.judge.witnesses import groups, under_confirmed, witnesses
 from southwell.references.matrices.quadratic import gyroscopic_modes
 from southwell.references.protocol import registry
 from southwell.references.protocol.interface import CORE, Independence, shares
@@ -99,14 +99,14 @@ def test_too_few_groups_are_status_1_and_a_line() -> None:
     assert summary.status(enough) == 0
     assert reported.missing(enough) == []
     few = run(origin("a", "A"), origin("b", "A"), required=2)
-    assert [(s.case, s.groups, s.required) for s in short(few)] == [("beam", 1, 2)]
+    assert [(s.case, s.groups, s.required) for s in under_confirmed(few)] == [("beam", 1, 2)]
     assert summary.status(few) == 1
     assert reported.missing(few)[0].startswith("beam: 1 of 2 required independent groups agree")
 
 
 @pytest.mark.slow
 def test_cases_require_groups_or_say_why_not() -> None:
-    for case in library.everything()[0].values():
+    for case in library.load_all()[0].values():
         for variant in case.variants:
             required = case.text.compare.required(variant.name.partition("/")[2])
             assert required >= 1 or case.text.compare.lacking, variant.name

@@ -2,7 +2,7 @@
 
 import pytest
 
-from southwell.cases.judge.verdict import Effect, bracketed, discretised, judge, known, percent
+from southwell.cases.judge.verdict import Effect, bracketed, discretised, judge, known_difference, percent
 
 TARGET = 1e-3
 
@@ -36,30 +36,30 @@ def test_the_papers_own_tenth_of_a_percent_needs_the_rounding_of_its_digits() ->
 
 def test_a_missing_effect_that_matters_is_named_and_quantified() -> None:
     effects = [Effect("prestretch", -0.0123), Effect("rotary inertia", 1e-7)]
-    verdict, reason = known(-0.0123, TARGET, effects)
+    verdict, reason = known_difference(-0.0123, TARGET, effects)
     assert verdict == "known difference"
     assert "no prestretch: −1.23 %" in reason
     assert "rotary" not in reason
 
 
 def test_two_missing_effects_are_quantified_apart_and_together() -> None:
-    _, reason = known(-0.05, TARGET, [Effect("prestretch", -0.02), Effect("coriolis", -0.03)])
+    _, reason = known_difference(-0.05, TARGET, [Effect("prestretch", -0.02), Effect("coriolis", -0.03)])
     assert "no prestretch: −2.00 %, no coriolis: −3.00 %, together −5.00 %" in reason
 
 
 def test_an_effect_of_a_few_per_cent_of_the_shift_is_named() -> None:
-    _, reason = known(-0.0123, TARGET, [Effect("prestretch", -0.012), Effect("rotary inertia", -3e-4)])
+    _, reason = known_difference(-0.0123, TARGET, [Effect("prestretch", -0.012), Effect("rotary inertia", -3e-4)])
     assert "no rotary inertia" in reason
     assert "together" in reason
 
 
 @pytest.mark.parametrize(("shift", "verdict"), [(-9e-4, "pass"), (-1.1e-3, "known difference")])
 def test_a_missing_effect_is_a_plain_pass_up_to_the_target(shift: float, verdict: str) -> None:
-    assert known(shift, TARGET, [Effect("prestretch", shift)])[0] == verdict
+    assert known_difference(shift, TARGET, [Effect("prestretch", shift)])[0] == verdict
 
 
 def test_a_mode_that_only_exists_without_the_effect_has_a_cause_without_a_size() -> None:
-    verdict, reason = known(None, TARGET, [Effect("geometric", -0.7)])
+    verdict, reason = known_difference(None, TARGET, [Effect("geometric", -0.7)])
     assert verdict == "inconclusive"
     assert "no geometric: size unknown" in reason
 

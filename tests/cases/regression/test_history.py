@@ -76,7 +76,7 @@ def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     jobs = [subprocess.Popen([sys.executable, "-c", WRITER, source, file, str(w), str(times)]) for w in range(writers)]
     assert [job.wait(120) for job in jobs] == [0] * writers
     content = history.read(file)
-    assert content.torn == ()
+    assert content.truncated == ()
     assert {e.commit for e in content.entries} == {f"{w}-{k}" for w in range(writers) for k in range(times)}
     assert all(len(e.cells) == 1500 for e in content.entries)
     for w in range(writers):  # each in its own order
@@ -96,10 +96,10 @@ def test_a_line_cut_short_is_named_and_spoils_no_other(tmp_path: Path, kept: int
     content = history.read(file)
     # a line that lacks only its end is whole
     assert [e.commit for e in content.entries] == (["first", "second"] if kept == -1 else ["first"])
-    assert content.torn == (() if kept == -1 else (2,))
+    assert content.truncated == (() if kept == -1 else (2,))
     history.append(file, history.entry(RUN, "third", date=MADE))
     after = history.read(file)
-    assert after.torn == content.torn
+    assert after.truncated == content.truncated
     assert [e.commit for e in after.entries] == [*(e.commit for e in content.entries), "third"]
 
 
@@ -108,7 +108,7 @@ def test_within_a_character(tmp_path: Path) -> None:
     history.append(file, history.entry(RUN, "first", date=MADE))
     with file.open("ab") as cut:
         cut.write('{"commit":"é'.encode()[:-1])
-    assert history.read(file).torn == (2,)
+    assert history.read(file).truncated == (2,)
 
 
 @pytest.mark.parametrize(

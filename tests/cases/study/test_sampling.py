@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy import stats
 
-from southwell.cases.input.changes import Change
+from southwell.cases.input.changes import PropertyChange
 from southwell.cases.study.plan import tasks
 from southwell.cases.study.sampling import Distribution, Normal, Uniform, Values, changes, sample
 
@@ -71,4 +71,7 @@ def test_every_blade_has_the_same_samples(tmp_path: Path) -> None:
 
 def test_absolute_values_are_values_and_others_are_factors() -> None:
     properties = {"pitch": Values((2.0,), absolute=True), "mass": Values((1.5,))}
-    assert changes(properties, np.array([2.0, 1.5])) == (Change("pitch", 2.0, False), Change("mass", 1.5, True))
+    assert changes(properties, np.array([2.0, 1.5])) == (
+        PropertyChange("pitch", 2.0, False),
+        PropertyChange("mass", 1.5, True),
+    )

@@ -12,7 +12,7 @@ from southwell.cases.input import library, mechanisms
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.cells import Head
 from southwell.cases.judge.reference import Reference
-from southwell.cases.judge.same import same
+from southwell.cases.judge.same import same_discretisation_cells
 from southwell.cases.judge.spectrum import Spectrum
 from southwell.cases.plan import mechanism
 from southwell.cases.plan.blade_columns import columns as blade_columns
@@ -37,7 +37,7 @@ def reported(change) -> list:
     """The cells of an answer that equals core's but for ``change``: frequency and damping of each of two modes."""
     core = reference()
     answer = change(replace(core.core.spectrum, weight=None, labels=()))
-    return same(HEAD, 30.0, core, answer, core.core.spectrum)[0]
+    return same_discretisation_cells(HEAD, 30.0, core, answer, core.core.spectrum)[0]
 
 
 def verdicts(cells: list, quantity: str = "frequency") -> list[str]:

@@ -24,7 +24,7 @@ from southwell.tests.support.beams import PARK, curved, tapered
 from southwell.tests.support.dense import dense
 from southwell.tests.support.units import random_blade
 
-BLADES = {v.name: v for case in library.everything()[0].values() for v in case.variants}
+BLADES = {v.name: v for case in library.load_all()[0].values() for v in case.variants}
 AGREE = 1e-9
 Array = np.ndarray
 NONE = np.zeros(3)

@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 from southwell.cases import data
-from southwell.cases.condense import curved_solid
 from southwell.cases.input import library
 from southwell.cases.judge.pairing import mac, weights
 from southwell.core import solve
@@ -22,6 +21,8 @@ from southwell.references.solid.curved import STUB, CurvedSolid, inside, layer, 
 from southwell.references.solid.known import ACROSS, CURVED, GLASS, recognised
 from southwell.references.solid.materials import Material, Orthotropic
 from southwell.references.solid.scikit_fem_blade import CODE, modes
+
+from ...support import curved_solid
 
 pytestmark = pytest.mark.skipif(hexahedra.version() is None, reason=f"not installed: {hexahedra.HINT}")
 

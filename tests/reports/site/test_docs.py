@@ -80,7 +80,7 @@ def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
 
 def test_a_page_for_every_case_with_the_words_of_its_file() -> None:
     made = site.cases()
-    cases, absent = library.everything()
+    cases, absent = library.load_all()
     assert {f"cases/{name}.md" for name in {*cases, *library.mechanisms(), *library.turbines()}} == set(made) - {
         "cases/index.md"
     }

@@ -86,9 +86,9 @@ def test_the_page_of_results_has_every_case() -> None:
 def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.MonkeyPatch) -> None:
     """Cases whose blade files are not part of the package may be among them."""
     run = results_file.read(readme.ROWS)
-    all_, _ = library.everything()
+    all_, _ = library.load_all()
     monkeypatch.delenv("SOUTHWELL_BLADES", raising=False)
-    _, absent = library.everything()
+    _, absent = library.load_all()
     ours = {v.name for name, case in all_.items() if name not in absent for v in case.variants}
     theirs = {v.name for name, case in all_.items() if name in absent for v in case.variants} | set(absent)
     assert ours <= set(summary.cases(run)) <= ours | theirs | {*library.mechanisms(), *library.turbines()}

@@ -29,7 +29,7 @@ Array = NDArray[np.float64]
 
 NAME = "BeamDyn"
 KEY_POINTS = ("kp_xr", "kp_yr", "kp_zr", "initial_twist")
-SAME = 1e-6
+MIN_SPACING = 1e-6
 """Key points and stations closer than this fraction of the length coincide."""
 
 
@@ -226,7 +226,7 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
     """
     length = axis.arc[-1]
     own = eta * length
-    points = axis.arc[np.abs(axis.arc[:, None] - own).min(1) > SAME * length]
+    points = axis.arc[np.abs(axis.arc[:, None] - own).min(1) > MIN_SPACING * length]
     s = np.sort(np.concatenate([own, points]))
     s[-1] = length
     if not follows(s, axis.points(axis.at(s))):

@@ -30,7 +30,7 @@ NEEDED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
 USED = (*NEEDED, "GJStff", "EAStff", "FlpIner", "EdgIner")
 MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
-LARGEST = 1_000_000
+MAX_BYTES = 1_000_000
 """Maximum size of a main file, bytes: larger files in the folder of a blade are not searched."""
 
 
@@ -86,7 +86,7 @@ def sibling_file(path: Path, kind: Callable[[Text], bool], named: Callable[[Text
         fits = (
             other.suffix.lower() in {".dat", ".inp", ".txt", ".fst"}
             and other.is_file()
-            and other.stat().st_size < LARGEST
+            and other.stat().st_size < MAX_BYTES
         )
         if not fits or other == path:
             continue

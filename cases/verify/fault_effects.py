@@ -18,7 +18,7 @@ from ..faults import table
 from ..faults.seeding import seeded
 from ..input.schema import Compare, Variant
 from ..solve import core_solver
-from ..solve.changed import Changed, changed
+from ..solve.changed import ModeChange, changed
 
 ELEMENTS = core_solver.COARSEST
 """Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""
@@ -37,15 +37,15 @@ DISCRETISATIONS = {"whole end mass": LUMPED}
 
 
 @dataclass(frozen=True)
-class Wrong:
+class FaultEffect:
     """Effect of one fault on a blade's compared modes at one speed; empty if there is no steady state."""
 
     fault: str
     omega: float
-    modes: tuple[Changed, ...]
+    modes: tuple[ModeChange, ...]
 
 
-def solve(variant: Variant, compare: Compare) -> list[Wrong]:
+def solve(variant: Variant, compare: Compare) -> list[FaultEffect]:
     """Solve one blade with every fault at every speed."""
     out = []
     for omega in variant.speeds.tolist():
@@ -54,7 +54,7 @@ def solve(variant: Variant, compare: Compare) -> list[Wrong]:
             how = DISCRETISATIONS.get(fault, CONSISTENT)
             faultless, wrong = right[how], _solved(fault, variant.blade, omega, compare, how)
             modes = changed(faultless, wrong, variant.blade, compare) if faultless and wrong else ()
-            out.append(Wrong(fault, omega, modes))
+            out.append(FaultEffect(fault, omega, modes))
     return out
 
 

@@ -1,12 +1,17 @@
-"""The adapter for solids with another solid than that of the case; imported only by a worker process."""
+"""Altered adapters of scikit-fem, imported only by a worker: one Gauss point for beams, another solid than the case's."""
 
 from dataclasses import replace
 
 from ...core.blade import Blade
 from ...core.modes import Modes
+from ...references.scikit_fem import beam
 from ...references.solid.curved import CurvedSolid
 from ...references.solid.known import CURVED, GLASS
 from ...references.solid.scikit_fem_blade import ScikitFemSolid, modes
+
+beam.QUADRATURE = 1
+
+ONE_POINT = beam.CODE
 
 
 class Mirrored(ScikitFemSolid):

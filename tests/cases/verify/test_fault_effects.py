@@ -8,7 +8,7 @@ import pytest
 from southwell.cases.diagnosis import blade_errors, scaled_terms
 from southwell.cases.faults import table
 from southwell.cases.input import library
-from southwell.cases.verify import controls
+from southwell.cases.verify import fault_effects
 from southwell.core.blade import Blade
 from southwell.core.element.discretize import Mass
 from southwell.core.element.measures import Measure
@@ -25,8 +25,8 @@ def first(modes: Modes, column: int = Y) -> float:
     return float(family(modes, column)[0])
 
 
-def made(fault: str, omega: float = OMEGA, how: tuple[Mass, Measure] = controls.CONSISTENT) -> Modes:
-    modes = controls.core(fault, park(), omega, 15, 10, how)
+def made(fault: str, omega: float = OMEGA, how: tuple[Mass, Measure] = fault_effects.CONSISTENT) -> Modes:
+    modes = fault_effects.core(fault, park(), omega, 15, 10, how)
     assert modes is not None
     return modes
 
@@ -85,7 +85,7 @@ def test_a_whole_end_mass_is_half_an_elements_mass_too_much() -> None:
     blade = park()
     extra = 0.5 * blade.mass[0, 0, 0] * blade.length / 15
     heavier = replace(blade, tip_mass=np.diag([extra] * 3 + [0.0] * 3))
-    ratio = first(made("whole end mass", how=controls.LUMPED)) / first(made("", how=controls.LUMPED))
+    ratio = first(made("whole end mass", how=fault_effects.LUMPED)) / first(made("", how=fault_effects.LUMPED))
     assert ratio == pytest.approx(first(exact(heavier)) / first(exact(blade)), abs=2e-3)
     assert ratio < 0.95
 
@@ -101,7 +101,7 @@ def test_a_coarse_mode_is_found_among_the_converged() -> None:
     """Fifteen point masses are 2 % off in the second mode; still it is the one that half a mass too much is seen in."""
     case = library.load("tip-mass")
     variant = replace(case.variants[0], speeds=np.array([12.0]))
-    (wrong,) = (w for w in controls.solve(variant, case.text.compare) if w.fault == "whole end mass")
+    (wrong,) = (w for w in fault_effects.solve(variant, case.text.compare) if w.fault == "whole end mass")
     assert max(wrong.modes, key=lambda m: abs(m.change or 0.0)).name == "flapwise 2"
 
 
@@ -109,6 +109,6 @@ def test_a_blade_that_a_mistake_leaves_singular_has_no_modes_to_tell_of() -> Non
     """A free lag hinge on the rotor's axis is not held by anything: its frequency is nought, or not a number."""
     lagging = replace(park(), hub_radius=0.6, root=np.array([np.inf] * 5 + [0.0]))
     variant = replace(library.load("park-cantilever").variants[0], blade=lagging, speeds=np.array([OMEGA]))
-    wrongs = controls.solve(variant, library.load("park-cantilever").text.compare)
+    wrongs = fault_effects.solve(variant, library.load("park-cantilever").text.compare)
     assert next(w for w in wrongs if w.fault == "no Coriolis").modes
     assert len(wrongs) == len(table.FAST)

@@ -1,6 +1,6 @@
 """Writes the case ``curved-solid``: the beam of a curved solid, with sections identified from the solid.
 
-``python -m southwell.cases.condense.curved_solid`` writes it again; the numbers of the file come from there only.
+``python -m southwell.tests.support.curved_solid`` writes it again; the numbers of the file come from there only.
 """
 
 import sys
@@ -8,13 +8,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ...core.blade import Blade
-from ...references.solid import identified
-from ...references.solid.curved import CurvedSolid
-from ...references.solid.known import ACROSS, CURVED
-from .. import data
-from ..input import atomic
-from ..input.readers import southwell_toml
+from southwell.cases import data
+from southwell.cases.input import atomic
+from southwell.cases.input.readers import southwell_toml
+from southwell.core.blade import Blade
+from southwell.references.solid import identified
+from southwell.references.solid.curved import CurvedSolid
+from southwell.references.solid.known import ACROSS, CURVED
 
 STATIONS = 41
 
@@ -31,9 +31,9 @@ bending and torsion couple. The 6×6 sections of the beam are identified from sl
 the whole solid in three dimensions, which reads no sections. The difference between the two is that of beam theory. It grows
 with the square of chord over wavelength, and is within the target for the modes compared. The root of the solid is held by St
 Venant's tractions, which leave its section free to warp and contract; the numbers are written by
-southwell.cases.condense.curved_solid.
+southwell.tests.support.curved_solid.
 """
-source = "computed by cases/condense/curved_solid.py; method: V. Giavotto et al., Computers and Structures 16 (1983) 403"
+source = "computed by tests/support/curved_solid.py; method: V. Giavotto et al., Computers and Structures 16 (1983) 403"
 
 [speeds]
 rad_s = [{speeds}]
