@@ -1,7 +1,8 @@
 """Seeded faults on the turbine that is verified: of core's assembly, of a code's answers, and of reading its file.
 
-Core's faults must let a code *fail* that agrees without them and shares no part of core. The faults of answers alter those of
-the code, which core must contradict. Mistakes of reading must differ from the second reading of the file.
+A fault of core must let a code *fail* that agrees without it and shares no part of core, or give core's turbine another mass,
+mass centre or inertia than the second reading has. A fault of answers alters those of the code, which core must contradict.
+A mistake of reading must differ from the second reading of the file.
 """
 
 from collections.abc import Callable, Sequence
@@ -21,6 +22,7 @@ from ..plan.turbine import TurbineSubject
 from ..plan.user_results import UserResults
 from ..run.executors import Serial
 from ..solve import turbine as solving
+from ..solve import turbine_weights
 from ..solve.turbine_reading import read_again
 from ..verify import matrix
 from . import own, own_reading
@@ -56,6 +58,7 @@ def run(subject: TurbineSubject, codes: Sequence[str], names: Sequence[str], reu
     def solve() -> tuple[Cell, ...]:
         return matrix.run([fastest], described, Serial(), reuse=reuse, parts=False).cells
 
+    weigh = _weighing(subject) if codes else list
     out = []
     with seeded((_remembered(),)):
         right = solve() if codes else ()
@@ -67,8 +70,23 @@ def run(subject: TurbineSubject, codes: Sequence[str], names: Sequence[str], reu
                 out.append(replace(control, needs=NO_WITNESS))
                 continue
             with seeded(fault.seams):
-                out.append(own.judged(control, right, solve()))
+                judged, heavy = own.judged(control, right, solve()), tuple(weigh())
+            out.append(judged if judged.detected_by or not heavy else replace(control, detected_by=heavy))
     return out
+
+
+def _weighing(subject: TurbineSubject) -> Callable[[], list[str]]:
+    """A function that returns what core's turbine differs in from the second reading, and did not without faults."""
+    weighed = subject.second_reading(subject.deck)[1] if subject.deck else None
+    if weighed is None:
+        return list
+
+    def failing() -> list[str]:
+        rows = turbine_weights.of_solver(subject.name, subject.turbine, weighed)
+        return [f"{subject.name}, Southwell's own model, {row.part}: fail" for row in rows if row.verdict == "fail"]
+
+    known = failing()
+    return lambda: [line for line in failing() if line not in known]
 
 
 def _remembered() -> Seam:

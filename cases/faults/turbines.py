@@ -14,6 +14,7 @@ from ...core.turbine.turbine import Turbine, shaft_pose
 from ...references.protocol.process import Failure
 from ...references.protocol.turbines import TurbineModes
 from ..solve import turbine as solving
+from ..solve import turbine_weights
 from .seeding import Fault, Seam, Trial
 
 SHAFT = shaft_pose(2.0, -7.0, np.radians(-15.0))
@@ -43,7 +44,7 @@ def _assembled(alter: Callable[[Turbine], Turbine]) -> tuple[Seam, ...]:
     def make(right: Any) -> Any:
         return lambda turbine, *how: right(alter(turbine), *how)
 
-    return ((solving, "machine", make),)
+    return (solving, "machine", make), (turbine_weights, "machine", make)
 
 
 def _projected(alter: Callable[[Any], Any]) -> tuple[Seam, ...]:

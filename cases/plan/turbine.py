@@ -15,13 +15,15 @@ from ...core.effects import ALL_EFFECTS
 from ...core.turbine.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
+from ...references.readers.turbine_mass import Weighed
 from .. import data
 from ..input import readers
 from ..input.readers.source import Mount, Source
 from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
-from ..judge.results import Setting
+from ..judge.results import PropertyCheck, Setting
 from ..judge.verdict import unsigned
+from ..solve import turbine_weights
 from ..solve.properties import of_reading
 from ..solve.reference import References
 from ..solve.refinement import Refining
@@ -145,13 +147,21 @@ class TurbineSubject(NotABlade):
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``; a second reading of OpenFAST's files."""
-        path = self.deck
-        if path is None:
+        if self.deck is None:
             return NOT_CHECKED
-        blade = readers.reading(path, self.mount)
-        file = readers.BladeFile(path, blade.blade, blade.source, self.mount)
-        of_blade, _ = of_reading(self.name, file, blade.blade)
-        return PropertyChecks((*read_again(self.name, self.turbine, path), *of_blade))
+        rows, weighed = self.second_reading(self.deck)
+        if weighed is None:
+            return PropertyChecks(rows)
+        rows += turbine_weights.of_solver(self.name, self.turbine, weighed)
+        return PropertyChecks(rows, turbine_weights.weighings(self.name, self.turbine, weighed, codes, limits))
+
+    def second_reading(self, deck: Path) -> tuple[list[PropertyCheck], Weighed | None]:
+        """The rows of a second reading of OpenFAST's files, and what the turbine weighs by it; None if they are not read."""
+        blade = readers.reading(deck, self.mount)
+        file = readers.BladeFile(deck, blade.blade, blade.source, self.mount)
+        of_blade, stations = of_reading(self.name, file, blade.blade)
+        rows = [*read_again(self.name, self.turbine, deck), *of_blade]
+        return rows, turbine_weights.expected(deck, blade.blade, stations)
 
 
 def of_case(case: TurbineCase) -> TurbineSubject:

@@ -15,6 +15,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.turbine.turbine import Turbine
 from ..matrices import rotating
 from ..matrices.quadratic import gyroscopic_modes
+from ..protocol.fingerprint import Fingerprint
 from ..protocol.interface import Independence
 from ..protocol.turbines import TurbineAdapter, TurbineModes
 from ..theories import turbine_motion, turbine_tree
@@ -63,8 +64,7 @@ class ExudynTurbine(TurbineAdapter):
             CodeError: no stable steady state at this speed, or equations that change with the azimuth.
         """
         segments = hinge_segments(turbine.blade, elements, omega, equal=True)
-        tower = hinge_segments(turbine.tower, elements, equal=True)
-        tree = turbine_tree.build(turbine, chain(turbine.tower, tower), chain(turbine.blade, segments))
+        tree = _tree(turbine, segments, elements)
         M, C, K, at_blade = linearize(segments, omega)
         q = np.zeros(len(tree.strain))
         q[tree.tower], weight = tower_weight.standing(tree)
@@ -80,6 +80,18 @@ class ExudynTurbine(TurbineAdapter):
         values, x = rotating.lowest(at, omega, groups, count, lowest, turbine.drivetrain.free)
         full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
         return TurbineModes(values, turbine_motion.shapes(tree, q, full), elements)
+
+    def turbine_fingerprint(self, turbine: Turbine, elements: int) -> Fingerprint:
+        """Of Exudyn's mass matrix at rest."""
+        segments = hinge_segments(turbine.blade, elements, equal=True)
+        tree = _tree(turbine_tree.floating(turbine), segments, elements)
+        M, _, _ = _linearized(tree, np.zeros(len(tree.strain)), 0.0, 0.0)
+        return turbine_tree.weighed(tree, M, elements)
+
+
+def _tree(turbine: Turbine, segments: HingedSegments, elements: int) -> TurbineTree:
+    tower = hinge_segments(turbine.tower, elements, equal=True)
+    return turbine_tree.build(turbine, chain(turbine.tower, tower), chain(turbine.blade, segments))
 
 
 def chain(blade: Blade, segments: HingedSegments) -> Chain:

@@ -12,7 +12,7 @@ azimuth (``matrices.rotating``).
 """
 
 from collections.abc import Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from ...core.effects import ALL_EFFECTS
 from ...core.space.spatial import skew
 from ...core.turbine.turbine import Turbine
 from ..matrices import rotating
+from ..protocol.fingerprint import Fingerprint
 from ..protocol.interface import CodeError, Independence, extra
 from ..protocol.turbines import TurbineAdapter, TurbineModes
 from ..sampling import points, stiffness_at
@@ -70,37 +71,29 @@ class PinocchioTurbine(TurbineAdapter):
             CodeError: no steady state at this speed, or equations that change with the azimuth.
         """
         tree = turbine_tree.build(turbine, chain(turbine.tower, elements), chain(turbine.blade, elements))
-        base = np.arange(tree.hub + 1)
-        bare = _Links(tree, base, tree.bodies)
         q = np.zeros(len(tree.strain))
         q[tree.tower], weight = _standing(tree)
-        held = _on_hub(tree, q)
-        single = _Links(held, np.arange(len(held.strain)), held.bodies)
-        q[tree.blades] = at_blade = _steady(tree, single, omega)
-        first = len(held.strain) - len(at_blade)
-        own = np.ix_(base, base)
-        moved = _by_tower(tree, q, first + len(at_blade))
+        parts = _parts(tree, q)
+        q[tree.blades] = at_blade = _steady(tree, parts.single, omega)
 
         def at(psi: float) -> tuple[Array, Array, Array]:
-            out = [np.zeros((len(q), len(q))) for _ in range(3)]
-            for total, part in zip(out, bare.linearized(q[base], omega, psi), strict=True):
-                total[own] += part
-            for k, joints in enumerate(tree.blades):
-                index = np.append(base, joints)
-                azimuth = psi + 2.0 * np.pi * k / turbine.blades
-                one = single.linearized(np.append(np.zeros(first), at_blade), omega, azimuth)
-                for total, part in zip(out, one, strict=True):
-                    total[np.ix_(index, index)] += moved.T @ part @ moved
-            M, C, K = out
-            K = K + tree.stiffness
+            M, C, K = parts.linearized(q, omega, psi)
+            K += tree.stiffness
             K[np.ix_(tree.tower, tree.tower)] += weight
             return turbine_motion.with_generator(tree, q, M, C, K)
 
         groups = [[int(k) - 1 for k in joint] for joint in tree.blades.T]  # without the azimuth
-        scale = _frequency(tree, single, at_blade, omega)
+        scale = _frequency(tree, parts.single, at_blade, omega)
         values, x = rotating.lowest(at, omega, groups, count, scale, turbine.drivetrain.free)
         full = np.insert(x, tree.spin, 0.0, axis=0)[: len(q)]
         return TurbineModes(values, turbine_motion.shapes(tree, q, full), elements)
+
+    def turbine_fingerprint(self, turbine: Turbine, elements: int) -> Fingerprint:
+        """Of Pinocchio's mass matrix at rest."""
+        turbine = turbine_tree.floating(turbine)
+        tree = turbine_tree.build(turbine, chain(turbine.tower, elements), chain(turbine.blade, elements))
+        q = np.zeros(len(tree.strain))
+        return turbine_tree.weighed(tree, _parts(tree, q).linearized(q, 0.0, 0.0)[0], elements)
 
 
 def chain(blade: Blade, elements: int) -> Chain:
@@ -214,6 +207,38 @@ class _Links:
         at[self.spin] = psi
         M = np.triu(self.pin.crba(self.model, self.data, at))
         return M + np.triu(M, 1).T, C, K
+
+
+@dataclass(frozen=True)
+class _Parts:
+    """The machine without blades, one blade on its hub, and the motion of this hub by the tree's coordinates."""
+
+    tree: TurbineTree
+    bare: _Links
+    single: _Links
+    moved: Array
+
+    def linearized(self, q: Array, omega: float, psi: float) -> tuple[Array, Array, Array]:
+        """M, C, K (n, n) of the inertia forces of the machine with all blades."""
+        base = np.arange(self.tree.hub + 1)
+        M, C, K = (np.zeros((len(q), len(q))) for _ in range(3))
+        for total, part in zip((M, C, K), self.bare.linearized(q[base], omega, psi), strict=True):
+            total[np.ix_(base, base)] += part
+        for k, joints in enumerate(self.tree.blades):
+            index = np.append(base, joints)
+            azimuth = psi + 2.0 * np.pi * k / len(self.tree.blades)
+            at_hub = np.append(np.zeros(len(self.moved) - len(joints)), q[joints])
+            for total, part in zip((M, C, K), self.single.linearized(at_hub, omega, azimuth), strict=True):
+                total[np.ix_(index, index)] += self.moved.T @ part @ self.moved
+        return M, C, K
+
+
+def _parts(tree: TurbineTree, q: Array) -> _Parts:
+    """The parts of a tree with the tower at the coordinates q (n,)."""
+    held = _on_hub(tree, q)
+    bare = _Links(tree, np.arange(tree.hub + 1), tree.bodies)
+    single = _Links(held, np.arange(len(held.strain)), held.bodies)
+    return _Parts(tree, bare, single, _by_tower(tree, q, len(held.strain)))
 
 
 def _standing(tree: TurbineTree) -> tuple[Array, Array]:

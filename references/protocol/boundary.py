@@ -179,6 +179,7 @@ def fingerprint(data: Any) -> Fingerprint | None:
     for name in ("mass", "first_moments", "rotor_inertia", "start"):
         _finite(name, getattr(answer, name))
     _finite("flexibility", answer.flexibility or ())
+    _finite("inertia", answer.inertia or ())
     return answer
 
 

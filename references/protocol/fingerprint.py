@@ -4,7 +4,7 @@ They are those of the undeformed blade as a rigid body, about the hub's centre, 
 blade's azimuth, z the rotor's axis.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated
 
 import numpy as np
@@ -31,6 +31,8 @@ class Fingerprint:
         flexibility: (21,) of the clamped blade at rest: displacements along, and rotations about, x, y, z of the tip by unit
             forces and moments there, m/N, rad/N and rad/(N m); the upper triangle, row by row; None if the code does not
             report it.
+        inertia: (3,) of a whole turbine: ``first_moments`` and it are about the tower's base, x up, y to starboard, z downwind,
+            kg m²; ``rotor_inertia`` is then about the shaft, without the generator. None of a blade.
     """
 
     mass: Annotated[float, Meta(ge=0)]
@@ -39,6 +41,7 @@ class Fingerprint:
     elements: Elements
     start: Annotated[float, Meta(ge=0)] = 0.0
     flexibility: Annotated[tuple[float, ...], Meta(min_length=21, max_length=21)] | None = None
+    inertia: tuple[float, float, float] | None = None
 
 
 UPPER = np.triu_indices(6)
@@ -72,3 +75,9 @@ def of_points(mass: Array, position: Array, elements: int) -> Fingerprint:
     first = mass @ position
     inertia = float(mass @ (position[:, :2] ** 2).sum(axis=1))
     return Fingerprint(float(mass.sum()), (float(first[0]), float(first[1]), float(first[2])), inertia, elements)
+
+
+def of_turbine(inertia: Array, rotor: float, elements: int) -> Fingerprint:
+    """The fingerprint of a turbine with the inertia (6, 6) about the tower's base, and that of its rotor about the shaft."""
+    up, across, along = np.diagonal(inertia)[3:].tolist()
+    return replace(of_matrix(inertia, elements), rotor_inertia=rotor, inertia=(up, across, along))

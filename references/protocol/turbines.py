@@ -12,6 +12,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.modes import STATIONS
+from .fingerprint import Fingerprint
 from .interface import Adapter, CodeError
 
 if TYPE_CHECKING:
@@ -70,6 +71,10 @@ class TurbineAdapter(Adapter):
         Raises:
             CodeError: no steady state, or equations that change with the azimuth.
         """
+
+    def turbine_fingerprint(self, turbine: "Turbine", elements: int) -> Fingerprint | None:
+        """Mass and inertia of the turbine that this code assembles, see ``fingerprint.of_turbine``; None: not reported."""
+        return None
 
     def solve_turbine(self, turbine: "Turbine", omega: float, elements: int, count: int) -> TurbineModes:
         """Check that the turbine is supported, and compute its modes; arguments as for ``turbine_modes``.

@@ -5,6 +5,7 @@ The process reads one request, with a blade, a turbine or mechanisms ::
     {"code": "module:attribute", "folder": …, "blade": {…}, "runs": [[omega, elements, count], …], "deck": {…}}
     {"code": "module:attribute", "folder": …, "blade": {…}, "fingerprints": [elements, …]}
     {"code": "module:attribute", "folder": …, "turbine": {…}, "runs": [[omega, elements, count], …]}
+    {"code": "module:attribute", "folder": …, "turbine": {…}, "fingerprints": [elements, …]}
     {"code": "module:attribute", "folder": …, "mechanisms": [{…}, …], "guess": {…}}
 
 imports the code, checks its version and whether it declines, and writes one line per question as soon as it is solved:
@@ -85,14 +86,14 @@ def answers(
 
 
 def fingerprints(
-    name: str, blade: Blade, elements: Sequence[int], limits: Limits, version: str = ""
+    name: str, subject: "Blade | Turbine", elements: Sequence[int], limits: Limits, version: str = ""
 ) -> list[FingerprintAnswer]:
-    """The fingerprint of a code's model with each number of elements, or a failure.
+    """The fingerprint of a code's model of a blade or a turbine with each number of elements, or a failure.
 
     Other arguments and exceptions as for ``answers``.
     """
-    fixed = {**registry.address(name), "blade": encode(blade)}
-
+    given = {"blade": encode(subject)} if isinstance(subject, Blade) else {"turbine": encode_turbine(subject)}
+    fixed = {**registry.address(name), **given}
     return _exchange(
         fixed,
         "fingerprints",
@@ -268,8 +269,11 @@ def _answer(request: Any) -> Iterator[Reply]:
     elif "turbine" in request:
         turbine = decode_turbine(request["turbine"])
         refusal = _declined(code, "unsupported_turbine", turbine)
-        for run in asked:
-            yield refusal or _solved(TurbineModes, code.solve_turbine, turbine, *run)
+        for question in asked:
+            if "fingerprints" in request:
+                yield refusal or _solved(Fingerprint, code.turbine_fingerprint, turbine, question)
+            else:
+                yield refusal or _solved(TurbineModes, code.solve_turbine, turbine, *question)
     else:
         blade = decode_blade(request["blade"])
         refusal = _declined(code, "unsupported", blade)

@@ -10,9 +10,12 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .openfast import first_of, has, parsed, text_of
 from .stations import NotReadError
+
+Array = NDArray[np.float64]
 
 Quantities = dict[str, tuple[float, str]]
 """Name → value and unit."""
@@ -40,21 +43,31 @@ def _number(file: Any, *labels: str) -> float:
     return float(first_of(file, *labels))
 
 
-def _tower(main: Any, tower: Any) -> Quantities:
+def tower_table(main: Any, tower: Any) -> tuple[Array, Array]:
+    """Heights of the tower's stations above its base, m, and the mass per length there, kg/m."""
+    at, table = _table(main, tower)
+    return at, _number(tower, "AdjTwMa") * table["tmassden"]
+
+
+def _table(main: Any, tower: Any) -> tuple[Array, dict[str, Array]]:
     height = _number(main, "TowerHt") - (
         _number(main, "TowerBsHt", "TwrRBHt") if has(main, "TowerBsHt") or has(main, "TwrRBHt") else 0.0
     )
     label = next(entry["label"] for entry in tower.data if "HtFract" in " ".join(entry.get("tabColumnNames") or ()))
     names = next(entry["tabColumnNames"] for entry in tower.data if entry["label"] == label)
     table = {name.lower(): column for name, column in zip(names, np.array(tower[label], float).T, strict=True)}
-    at = table["htfract"] * height
+    return table["htfract"] * height, table
+
+
+def _tower(main: Any, tower: Any) -> Quantities:
+    at, table = _table(main, tower)
 
     def along(column: str, factor: str) -> float:
         values = _number(tower, factor) * table[column]
         return float(np.sum(0.5 * (values[1:] + values[:-1]) * np.diff(at)))
 
     return {
-        "height of the tower": (height, "m"),
+        "height of the tower": (float(at[-1]), "m"),
         "mass of the tower": (along("tmassden", "AdjTwMa"), "kg"),
         "fore-aft stiffness along the tower": (along("twfastif", "AdjFASt"), "N m³"),
         "side-to-side stiffness along the tower": (along("twssstif", "AdjSSSt"), "N m³"),

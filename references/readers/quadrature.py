@@ -48,6 +48,12 @@ def weigh(blade: Mounted, tip: Array, start: float = 0.0, rotary: bool = True) -
         start: arc length at which to begin, m.
         rotary: whether sections have moments of inertia about their mass centres.
     """
+    mass, first, second = moments(blade, tip, start, rotary)
+    return mass, first, float(second[0, 0] + second[1, 1])
+
+
+def moments(blade: Mounted, tip: Array, start: float = 0.0, rotary: bool = True) -> tuple[float, Array, Array]:
+    """Mass, first moments (3,) and ∫ r rᵀ dm (3, 3), kg m², about the hub's centre; arguments as for ``weigh``."""
     s, weight = _points(blade.stations.s, start)
     bodies = np.concatenate([weight[:, None, None] * linear(blade.stations.s, blade.stations.mass, s), tip[None]])
     position, axes = placed(blade, np.append(s, blade.stations.s[-1]))
@@ -113,7 +119,7 @@ def _curve(blade: Stations, kinks: tuple[float, ...], s: Array) -> tuple[Array, 
     return position, slope / np.linalg.norm(slope, axis=1, keepdims=True)
 
 
-def _sum(bodies: Array, axes: Array, position: Array, rotary: bool) -> tuple[float, Array, float]:
+def _sum(bodies: Array, axes: Array, position: Array, rotary: bool) -> tuple[float, Array, Array]:
     """Of bodies with inertia (n, 6, 6) in axes (n, 3, 3) about points (n, 3): ∫ r rᵀ dm is W = m p pᵀ + p cᵀ + c pᵀ + S."""
     m = bodies[:, 0, 0]
     own = np.stack([bodies[:, 2, 4] * -1, -bodies[:, 0, 5], bodies[:, 0, 4]], axis=1)  # m times the centre
@@ -124,6 +130,6 @@ def _sum(bodies: Array, axes: Array, position: Array, rotary: bool) -> tuple[flo
         point = own[:-1, :, None] * own[:-1, None, :]
         second[:-1] = np.divide(point, m[:-1, None, None], out=np.zeros_like(point), where=m[:-1, None, None] > 0)
     S = axes @ second @ np.swapaxes(axes, 1, 2)
-    squares = [m * position[:, k] ** 2 + 2 * position[:, k] * first[:, k] + S[:, k, k] for k in (0, 1)]
-    total = first.sum(0) + m @ position
-    return float(m.sum()), total, float(sum(part.sum() for part in squares))
+    crossed = position.T @ first
+    second = (position.T * m) @ position + crossed + crossed.T + S.sum(axis=0)
+    return float(m.sum()), first.sum(0) + m @ position, second

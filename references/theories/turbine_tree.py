@@ -16,6 +16,7 @@ from ...core.blade import clamped, straight
 from ...core.space.spatial import rotation, skew
 from ...core.turbine.tower import Support
 from ...core.turbine.turbine import Turbine
+from ..protocol.fingerprint import Fingerprint, of_turbine
 
 Array = NDArray[np.float64]
 Index = NDArray[np.intp]
@@ -220,6 +221,16 @@ def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
         chains=(tower, blade),
         foot=foot,
     )
+
+
+def weighed(tree: TurbineTree, M: Array, elements: int) -> Fingerprint:
+    """What a mass matrix (n, n) weighs of a tree at rest on a base that moves in all directions, see ``floating``."""
+    return of_turbine(M[:6, :6], float(M[tree.spin, tree.spin]), elements)
+
+
+def floating(turbine: Turbine) -> Turbine:
+    """The turbine on a base that moves in all directions."""
+    return replace(turbine, support=Support(np.eye(6)))
 
 
 def on_springs(tower: Chain, support: Support) -> Chain:

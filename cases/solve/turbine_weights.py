@@ -1,0 +1,133 @@
+"""Mass, mass centre and inertia of the turbine that each code assembles, against those of the second reading of its files."""
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from importlib.metadata import version
+from pathlib import Path
+
+import numpy as np
+
+from ...core.blade import Blade
+from ...core.effects import ALL_EFFECTS
+from ...core.element.mesh import Mesh
+from ...core.space import spatial as sp
+from ...core.space.inertia import transformed
+from ...core.spectrum.mesh_solver import balance
+from ...core.turbine import component
+from ...core.turbine import turbine as assembly
+from ...core.turbine.turbine import Turbine, machine
+from ...references.protocol.description import Description
+from ...references.protocol.fingerprint import Fingerprint, of_turbine
+from ...references.protocol.process import Failure, Limits
+from ...references.protocol.worker import fingerprints
+from ...references.readers import Stations
+from ...references.readers.quadrature import Mounted
+from ...references.readers.stations import NotReadError
+from ...references.readers.turbine_mass import Weighed, weigh
+from ..judge.results import PropertyCheck
+from .properties import CORE
+
+TARGET = 1e-5
+"""Largest difference: rigid bodies and integrals of sections are the same in every discretisation."""
+
+
+def expected(path: Path, blade: Blade, stations: Stations) -> Weighed | None:
+    """What the second reading of the files weighs; None if they are not read."""
+    mounted = Mounted(stations, blade.hub_radius, blade.precone, blade.pitch, blade.kinks)
+    try:
+        return weigh(path, mounted, blade.tip_mass)
+    except NotReadError:
+        return None
+
+
+def of_core(turbine: Turbine) -> Fingerprint:
+    """The turbine that core assembles: its tower's mesh, which carries nacelle and rotor, and its rotor at rest."""
+    made = machine(turbine)
+    state = balance(made.blade_mesh, 0.0, np.zeros(3), ALL_EFFECTS)
+    blade = component.reduced(made.blade_mesh, state, made.resolution.blade_modes)
+    rotor = assembly.rotor(made.turbine, blade, 0.0, 0.0)[0]
+    return of_turbine(_body(made.tower_mesh), float(rotor[-1, -1]), made.resolution.blade_elements)
+
+
+def _body(mesh: Mesh) -> np.ndarray:
+    points = mesh.beams.points
+    at = mesh.nodes[mesh.parent[points.element]] @ sp.exp(points.zeta0)
+    out = transformed(points.mass, at).sum(axis=0) + transformed(mesh.lumps, mesh.nodes).sum(axis=0)
+    return np.asarray(out, float)
+
+
+def rows(case: str, code: str, release: str, model: Fingerprint, weighed: Weighed) -> list[PropertyCheck]:
+    """The rows of one model; first moments are compared relative to mass times height."""
+    whole = weighed.whole
+    moment = whole.mass * weighed.height
+    about = whole.inertia
+    own = model.inertia or (0.0, 0.0, 0.0)
+    compared = [
+        ("mass", "kg", model.mass, whole.mass, whole.mass),
+        *(
+            (f"first moment of mass {name}", "kg m", model.first_moments[k], float(whole.first[k]), moment)
+            for k, name in enumerate(("up", "to starboard", "downwind"))
+        ),
+        ("rotor's inertia about the shaft", "kg m²", model.rotor_inertia, weighed.rotor, weighed.rotor),
+        *(
+            (f"inertia about the base, {name}", "kg m²", own[k], float(about[k]), float(about[k]))
+            for k, name in enumerate(("yaw", "pitch", "roll"))
+        ),
+    ]
+    out = []
+    for name, unit, value, reference, size in compared:
+        difference = (value - reference) / size
+        fails = abs(difference) > TARGET
+        reason = f"{name}: {value:.6g} {unit} in the code's model, {reference:.6g} {unit} by the second reading"
+        out.append(
+            PropertyCheck(
+                *(case, code, release, "fingerprint", name, value, reference, unit, difference, TARGET),
+                "fail" if fails else "pass",
+                reason if fails else "",
+            )
+        )
+    return out
+
+
+@dataclass(frozen=True)
+class TurbineWeighing:
+    """The task that compares the turbine that one code assembles; attributes as for ``properties.Weighing``."""
+
+    case: str
+    turbine: Turbine
+    weighed: Weighed
+    description: Description
+    limits: Limits
+    storable: bool = False
+
+    @property
+    def code(self) -> str:
+        """Name of the code."""
+        return self.description.name
+
+    def __call__(self) -> list[PropertyCheck]:
+        """The rows: one for each property, or one with the reason why there are none."""
+        code, release = self.description, self.description.version or ""
+        (model,) = fingerprints(code.asked, self.turbine, code.levels[:1], self.limits, release)
+        if isinstance(model, Fingerprint) and model.inertia is not None:
+            return rows(self.case, code.name, release, model, self.weighed)
+        reason = model.reason if isinstance(model, Failure) else "the code reports no mass"
+        kind = "not run" if isinstance(model, Failure) and model.kind != "unsupported" else "not applicable"
+        return [
+            PropertyCheck(
+                *(self.case, code.name, release, "fingerprint", "", None, None, "", None, TARGET), kind, reason
+            )
+        ]
+
+
+def weighings(
+    case: str, turbine: Turbine, weighed: Weighed, codes: Sequence[Description], limits: Limits
+) -> list[TurbineWeighing]:
+    """The tasks of all codes that take turbines."""
+    ready = (code for code in codes if code.turbines and not code.failure and code.version)
+    return [TurbineWeighing(case, turbine, weighed, code, limits) for code in ready]
+
+
+def of_solver(case: str, turbine: Turbine, weighed: Weighed) -> list[PropertyCheck]:
+    """The rows of the turbine that core assembles."""
+    return rows(case, CORE, version("southwell"), of_core(turbine), weighed)
