@@ -103,7 +103,9 @@ def test_two_refinements_show_no_order() -> None:
 
 
 def test_the_last_change_of_a_spectral_code_is_its_uncertainty() -> None:
-    assert from_refinement((4, 6, 8), [1.5, 2.0, 2.02], 0).uncertainty == pytest.approx(0.02 / 2.02)
+    estimate = from_refinement((4, 6, 8), [1.5, 2.0, 2.02], 0)
+    assert estimate.value == 2.02
+    assert estimate.uncertainty == pytest.approx(0.02 / 2.02)
 
 
 def test_nothing_is_surer_than_rounding() -> None:
