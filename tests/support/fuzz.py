@@ -98,8 +98,8 @@ def _replace(pattern: re.Pattern[bytes]) -> Callable[[bytes, random.Random], byt
         result = list(pattern.finditer(c))
         if not result:
             return c
-        one = rng.choice(result)
-        return c[: one.start()] + rng.choice(HOSTILE).encode() + c[one.end() :]
+        match = rng.choice(result)
+        return c[: match.start()] + rng.choice(HOSTILE).encode() + c[match.end() :]
 
     return change
 

@@ -55,12 +55,12 @@ class Machine:
         def integral(*factors: Array) -> float:
             return float(self.mass * np.sum(np.prod(factors, axis=0)) * dr)
 
-        one = np.ones_like(r)
+        ones = np.ones_like(r)
         n = 14
         x, y, yaw, gen, drt = range(5)
         M, dM, H, dH, K, C = (np.zeros((n, n)) for _ in range(6))
         I = integral(r, r)
-        rotor = 3 * integral(one)
+        rotor = 3 * integral(ones)
         M[x, x] = M[y, y] = self.nacelle + rotor
         M[yaw, yaw] = self.yaw_inertia + 1.5 * I
         M[gen, gen] = self.generator_factor * self.generator + 3 * I

@@ -38,13 +38,13 @@ def test_a_failing_column_is_diagnosed_from_its_cells() -> None:
 
 
 def test_only_failures_and_added_files_are_due() -> None:
-    passing = [replace(one, verdict="pass") for one in cells()]
+    passing = [replace(row, verdict="pass") for row in cells()]
     assert not is_due(passing, added=False)
     assert is_due(passing, added=True)
     assert is_due([*passing[1:], cells()[0]], added=False)
     crashed = replace(cells()[0], value=None, mode=0)
     assert not is_due([crashed], added=True)
-    assert not is_due([replace(one, role="measured") for one in cells()], added=True)
+    assert not is_due([replace(row, role="measured") for row in cells()], added=True)
 
 
 def test_the_terminal_and_the_report_show_it() -> None:

@@ -135,6 +135,6 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
 
 
 def test_rows_survive_the_disk(tmp_path: Path) -> None:
-    one = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), change=None)))
-    results_file.write(tmp_path / "results.jsonl", one)
-    assert results_file.read(tmp_path / "results.jsonl") == one
+    written = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), change=None)))
+    results_file.write(tmp_path / "results.jsonl", written)
+    assert results_file.read(tmp_path / "results.jsonl") == written

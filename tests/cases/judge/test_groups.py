@@ -69,15 +69,15 @@ def test_a_third_may_link_two() -> None:
 
 @pytest.mark.parametrize("field", ["engine", "theory", "rotation", "sections"])
 def test_who_has_something_of_cores_confirms_the_implementation_only(field: str) -> None:
-    one = run(replace(origin("a", "A"), **{field: CORE}))
-    assert count(one) == []
-    assert reported.table(one)[0]["confirms the implementation only"] == "a"
+    derived = run(replace(origin("a", "A"), **{field: CORE}))
+    assert count(derived) == []
+    assert reported.table(derived)[0]["confirms the implementation only"] == "a"
 
 
 def test_who_declares_nothing_counts_for_nothing() -> None:
-    one = replace(run(origin("a", "A")), origins=())
-    assert count(one) == []
-    assert "a (undeclared" in reported.table(one)[0]["not counted"]
+    derived = replace(run(origin("a", "A")), origins=())
+    assert count(derived) == []
+    assert "a (undeclared" in reported.table(derived)[0]["not counted"]
 
 
 @pytest.mark.parametrize(

@@ -113,9 +113,9 @@ def test_a_degenerate_pair_is_compared_as_a_subspace(angle: float, phase: float)
     first, second, third = pair(reference, other, range(3))
     assert {first.mode, second.mode} == {0, 1}
     assert third.mode == 2
-    for one in (first, second):  # at every angle, also where the shapes alone are alike
-        assert "subspace of 2" in one.note
-        assert one.mac == pytest.approx(1.0)
+    for answer in (first, second):  # at every angle, also where the shapes alone are alike
+        assert "subspace of 2" in answer.note
+        assert answer.mac == pytest.approx(1.0)
 
 
 def test_a_subspace_that_is_not_the_same_has_no_partner() -> None:

@@ -75,8 +75,8 @@ def test_kinds_and_count() -> None:
 )
 def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: str) -> None:
     """The worst of a code's numbers: one that agrees beside it does not help."""
-    (one,) = witnesses(run(cell("alpha"), cell("alpha", mode=2, **changes)), "beam")
-    assert (one.standing, one.fine) == (standing, fine)
+    (witness,) = witnesses(run(cell("alpha"), cell("alpha", mode=2, **changes)), "beam")
+    assert (witness.standing, witness.fine) == (standing, fine)
 
 
 @pytest.mark.parametrize(("verdict", "standing"), [("fail", "disagrees"), ("inconclusive", "open")])

@@ -82,14 +82,14 @@ def of(run: Run, name: str = "rig") -> list[Cell]:
 
 def test_units_and_digits(tmp_path: Path) -> None:
     text = "frequency [Hz], speed [rpm], mode, family # any order\n\n1.50, 30, 2, flapwise\n4e1, 0, 3,\n"
-    one, two = read(tmp_path, text).rows
-    assert (one.family, one.mode, one.line, one.blade) == ("flapwise", 2, 3, "")
-    assert one.omega == pytest.approx(math.pi)
-    assert one.value.value == pytest.approx(3 * math.pi)
-    assert one.value.uncertainty == pytest.approx(0.005 / 1.5)
-    assert one.slack == pytest.approx(0.5 * math.pi / 30)
-    assert (two.family, two.mode) == ("", 3)
-    assert two.value.uncertainty == pytest.approx(5 / 40)
+    first, second = read(tmp_path, text).rows
+    assert (first.family, first.mode, first.line, first.blade) == ("flapwise", 2, 3, "")
+    assert first.omega == pytest.approx(math.pi)
+    assert first.value.value == pytest.approx(3 * math.pi)
+    assert first.value.uncertainty == pytest.approx(0.005 / 1.5)
+    assert first.slack == pytest.approx(0.5 * math.pi / 30)
+    assert (second.family, second.mode) == ("", 3)
+    assert second.value.uncertainty == pytest.approx(5 / 40)
 
 
 def test_families_by_the_names_that_others_use(tmp_path: Path) -> None:
@@ -99,9 +99,9 @@ def test_families_by_the_names_that_others_use(tmp_path: Path) -> None:
 
 def test_a_given_uncertainty_takes_the_place_of_the_digits(tmp_path: Path) -> None:
     text = "speed [gamma], frequency [gamma], mode, uncertainty [%]\n2, 3.6, edgewise 1, 0.5\n2, 3.6, flapwise 1,\n"
-    one, two = read(tmp_path, text).rows
-    assert one.value.uncertainty == pytest.approx(5e-3)
-    assert two.value.uncertainty == pytest.approx(0.05 / 3.6)
+    first, second = read(tmp_path, text).rows
+    assert first.value.uncertainty == pytest.approx(5e-3)
+    assert second.value.uncertainty == pytest.approx(0.05 / 3.6)
 
 
 @pytest.mark.slow
@@ -163,12 +163,12 @@ def test_the_output_of_bmodes_is_read_with_the_speed_of_its_input(tmp_path: Path
     with pytest.raises(CaseError, match=r"blade\.bmi is not beside it"):
         user_results.read("bmodes", path)
     (tmp_path / "blade.bmi").write_text("1 beam_type\n12.1   rot_rpm: rotor speed\n")
-    one, two = user_results.read("bmodes", path).rows
-    assert (one.mode, two.mode, one.family) == (1, 2, "")
-    assert one.omega == pytest.approx(12.1 * math.pi / 30)
-    assert one.value.value == pytest.approx(2 * math.pi * 0.6711)
-    assert one.value.uncertainty == pytest.approx(0.5e-4 / 0.6711)
-    assert two.value.uncertainty == pytest.approx(0.5e-3 / 1.087)
+    first, second = user_results.read("bmodes", path).rows
+    assert (first.mode, second.mode, first.family) == (1, 2, "")
+    assert first.omega == pytest.approx(12.1 * math.pi / 30)
+    assert first.value.value == pytest.approx(2 * math.pi * 0.6711)
+    assert first.value.uncertainty == pytest.approx(0.5e-4 / 0.6711)
+    assert second.value.uncertainty == pytest.approx(0.5e-3 / 1.087)
 
 
 BAD = [
@@ -267,9 +267,9 @@ def test_a_file_cannot_have_the_name_of_a_code(tmp_path: Path) -> None:
 
 
 def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
-    one = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n")
+    content = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n")
     with pytest.raises(CaseError, match="another file has this name"):
-        user_results.check([one, one], speeds_of_blades(blades(park())), ["yoo-shin"])
+        user_results.check([content, content], speeds_of_blades(blades(park())), ["yoo-shin"])
 
 
 def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Reference:

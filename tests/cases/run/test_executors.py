@@ -92,8 +92,8 @@ def test_software_is_versions_and_sources() -> None:
 
 @pytest.fixture(scope="module")
 def cluster() -> Iterator[Any]:
-    with clusters.local(1) as one:
-        yield one
+    with clusters.local(1) as design:
+        yield design
 
 
 @pytest.mark.slow
@@ -176,9 +176,9 @@ def test_slurm_jobs_are_submitted_and_cancelled(tmp_path: Path, monkeypatch: pyt
         pass
     options = {"cores": 1, "processes": 1, "memory": "1GB", "interface": "lo"}
     with import_module("dask.config").set({f"jobqueue.slurm.{key}": value for key, value in options.items()}):
-        one = study(tmp_path, samples=3)
+        design = study(tmp_path, samples=3)
         with executor(1, "slurm") as pool:
-            assert solved(one, tmp_path / "slurm.jsonl", pool) == solved(one, tmp_path / "serial.jsonl")
+            assert solved(design, tmp_path / "slurm.jsonl", pool) == solved(design, tmp_path / "serial.jsonl")
     assert (tmp_path / "cancelled").read_text().strip()
 
 

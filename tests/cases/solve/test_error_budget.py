@@ -134,9 +134,9 @@ def test_the_speed_is_the_highest_that_is_printed() -> None:
 @cache
 def run() -> Run:
     case = library.load(CASE)
-    one = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
+    single_speed = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(blades(one), ["yoo-shin", "exact-beam"], executor)
+        return matrix.run(blades(single_speed), ["yoo-shin", "exact-beam"], executor)
 
 
 @pytest.mark.slow

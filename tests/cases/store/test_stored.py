@@ -62,11 +62,11 @@ def test_a_column_that_solves_nothing_starts_no_process(kept: Store) -> None:
 
     head = Head("blade", "absent", "", "code", 1e-3)
     column = Column("absent", ALL_EFFECTS, head, partial(lost, head), solves=False)
-    one = Stored(Refusing(), kept)
-    cells, _ = one.submit(column, [1.0], [None]).result()
-    assert (len(cells), CALLS, one.asked) == (1, ["absent"], 0)
+    stored_tasks = Stored(Refusing(), kept)
+    cells, _ = stored_tasks.submit(column, [1.0], [None]).result()
+    assert (len(cells), CALLS, stored_tasks.asked) == (1, ["absent"], 0)
     with pytest.raises(AssertionError, match="a task was started"):
-        one.submit(replace(column, solves=True), [1.0], [None])
+        stored_tasks.submit(replace(column, solves=True), [1.0], [None])
 
 
 def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: Store) -> None:

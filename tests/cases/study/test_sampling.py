@@ -51,22 +51,22 @@ def test_the_same_seed_gives_the_same_sample_and_another_another() -> None:
 
 
 def test_a_task_does_not_depend_on_the_tasks_before_it(tmp_path: Path) -> None:
-    one = study(tmp_path, samples=20)
-    whole = dict(tasks(one, range(20)))
-    drawn = sample(one.properties, 20, one.text.seed)
+    design = study(tmp_path, samples=20)
+    whole = dict(tasks(design, range(20)))
+    drawn = sample(design.properties, 20, design.text.seed)
     assert [[change.value for change in whole[k].changes] for k in range(20)] == drawn.tolist()
     for start in (1, 7, 19):
-        for number, task in tasks(one, range(start, 20)):
+        for number, task in tasks(design, range(start, 20)):
             assert task.changes == whole[number].changes
             assert task.sample == whole[number].sample == number
 
 
 def test_every_blade_has_the_same_samples(tmp_path: Path) -> None:
-    one = study(tmp_path, samples=4, blade="yoo-shin-chordwise")
-    assert len(one.blades) > 1
-    result = dict(tasks(one, range(4 * len(one.blades))))
+    design = study(tmp_path, samples=4, blade="yoo-shin-chordwise")
+    assert len(design.blades) > 1
+    result = dict(tasks(design, range(4 * len(design.blades))))
     assert all(task.changes == result[number % 4].changes for number, task in result.items())
-    assert [result[4 * k].blade.name for k in range(len(one.blades))] == [blade.name for blade in one.blades]
+    assert [result[4 * k].blade.name for k in range(len(design.blades))] == [blade.name for blade in design.blades]
 
 
 def test_absolute_values_are_values_and_others_are_factors() -> None:

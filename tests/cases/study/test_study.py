@@ -51,8 +51,8 @@ def test_four_times_the_flapwise_stiffness_doubles_the_flapwise_frequencies_at_r
 
 
 def test_every_sample_speed_and_mode_has_a_row(tmp_path: Path) -> None:
-    one = study(tmp_path)
-    solved(one, tmp_path / "out.jsonl")
+    design = study(tmp_path)
+    solved(design, tmp_path / "out.jsonl")
     result = rows(tmp_path / "out.jsonl")
     assert sorted((r.sample, r.omega_rad_s, r.mode) for r in result) == [
         (sample, omega, mode) for sample in range(6) for omega in (0.0, 10.0) for mode in (1, 2, 3)
@@ -116,15 +116,17 @@ class Stopping(Serial):
 
 @pytest.mark.parametrize("at", [0, 1, 4])
 def test_a_stopped_study_continues_and_solves_nothing_twice(at: int, tmp_path: Path) -> None:
-    one, asked = study(tmp_path), []
+    design, asked = study(tmp_path), []
 
     def counted(task: Task) -> bytes:
         asked.append(task.sample)
         return stub(task)
 
     with pytest.raises(BrokenExecutor):
-        solved(one, tmp_path / "out.jsonl", Stopping(at), answer=counted)
-    assert solved(one, tmp_path / "out.jsonl", answer=counted) == solved(one, tmp_path / "whole.jsonl", answer=stub)
+        solved(design, tmp_path / "out.jsonl", Stopping(at), answer=counted)
+    assert solved(design, tmp_path / "out.jsonl", answer=counted) == solved(
+        design, tmp_path / "whole.jsonl", answer=stub
+    )
     assert sorted(asked) == list(range(6))
 
 
@@ -140,25 +142,25 @@ class BrokenFirst(Serial):
 
 
 def test_answers_that_arrived_before_the_study_stopped_are_kept(tmp_path: Path) -> None:
-    one = study(tmp_path)
+    design = study(tmp_path)
     with pytest.raises(BrokenExecutor):
-        solved(one, tmp_path / "out.jsonl", BrokenFirst(), answer=stub)
+        solved(design, tmp_path / "out.jsonl", BrokenFirst(), answer=stub)
     assert {row.sample for row in rows(tmp_path / "out.jsonl")} == {1, 2, 3, 4, 5}
 
 
 @pytest.mark.parametrize("cut", [1, 60, 400, 2000])
 def test_a_truncated_file_continues_as_if_it_had_not_been(cut: int, tmp_path: Path) -> None:
-    one, path = study(tmp_path), tmp_path / "out.jsonl"
-    whole = solved(one, path, answer=stub)
+    design, path = study(tmp_path), tmp_path / "out.jsonl"
+    whole = solved(design, path, answer=stub)
     path.write_bytes(path.read_bytes()[:-cut])
-    assert solved(one, path, answer=stub) == whole
+    assert solved(design, path, answer=stub) == whole
 
 
 def test_a_truncated_header_is_written_again(tmp_path: Path) -> None:
-    one, path = study(tmp_path), tmp_path / "out.jsonl"
-    whole = solved(one, path, answer=stub)
+    design, path = study(tmp_path), tmp_path / "out.jsonl"
+    whole = solved(design, path, answer=stub)
     path.write_bytes(path.read_bytes()[:40])
-    assert solved(one, path, answer=stub) == whole
+    assert solved(design, path, answer=stub) == whole
 
 
 @pytest.mark.parametrize(
@@ -188,11 +190,11 @@ def test_the_file_of_a_changed_study_is_refused(before: str, after: str, tmp_pat
 
 
 def test_the_file_of_another_version_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    one = study(tmp_path)
-    solved(one, tmp_path / "out.jsonl", answer=stub)
+    design = study(tmp_path)
+    solved(design, tmp_path / "out.jsonl", answer=stub)
     monkeypatch.setattr(sources, "package", lambda: "other")
     with pytest.raises(CaseError, match="another version of Southwell or its libraries"):
-        solved(one, tmp_path / "out.jsonl", answer=stub)
+        solved(design, tmp_path / "out.jsonl", answer=stub)
 
 
 @pytest.mark.parametrize("content", [b"notes\n", b"notes without an end", b'{"study": 1}\n', b"\0" * 100])
@@ -205,18 +207,18 @@ def test_a_file_that_is_no_study_is_refused_and_unchanged(content: bytes, tmp_pa
 
 
 def test_a_damaged_or_repeated_line_is_refused_by_its_number(tmp_path: Path) -> None:
-    one, path = study(tmp_path), tmp_path / "out.jsonl"
-    solved(one, path, answer=stub)
+    design, path = study(tmp_path), tmp_path / "out.jsonl"
+    solved(design, path, answer=stub)
     whole = path.read_bytes().splitlines(keepends=True)
     path.write_bytes(b"".join([*whole[:3], b"noise\n", *whole[4:]]))
     with pytest.raises(CaseError, match="line 4: not a row"):
-        solved(one, path, answer=stub)
+        solved(design, path, answer=stub)
     path.write_bytes(b"".join([*whole[:3], *whole[4:]]))
     with pytest.raises(CaseError, match=r"line 4: sample 0 .* gap"):
-        solved(one, path, answer=stub)
+        solved(design, path, answer=stub)
     path.write_bytes(b"".join([*whole, *whole[1:7]]))
     with pytest.raises(CaseError, match=rf"line {len(whole) + 1}: sample 0 .* twice"):
-        solved(one, path, answer=stub)
+        solved(design, path, answer=stub)
 
 
 def test_two_processes_cannot_write_to_one_file(tmp_path: Path) -> None:
@@ -241,9 +243,9 @@ class Counting(Serial):
 
 def test_no_more_tasks_than_the_window_are_ahead(tmp_path: Path) -> None:
     executor, ahead = Counting(), []
-    one = study(tmp_path, samples=50)
-    with StudyJournal(tmp_path / "out.jsonl", header(one)) as journal:
-        run(one, executor, journal, lambda done: ahead.append(executor.submitted - done), stub, window=7)
+    design = study(tmp_path, samples=50)
+    with StudyJournal(tmp_path / "out.jsonl", header(design)) as journal:
+        run(design, executor, journal, lambda done: ahead.append(executor.submitted - done), stub, window=7)
     assert executor.submitted == 50
     assert max(ahead) < 7  # reported after an answer is written and before the next task is submitted
     assert sum(k == 6 for k in ahead) > 30
@@ -251,12 +253,12 @@ def test_no_more_tasks_than_the_window_are_ahead(tmp_path: Path) -> None:
 
 def peak(folder: Path, samples: int) -> int:
     """Largest memory, bytes, of a run with six answers per sample, and of opening its file again."""
-    one = study(folder, samples=samples)
+    design = study(folder, samples=samples)
     tracemalloc.start()
     try:
         for _ in range(2):
-            with StudyJournal(folder / "out.jsonl", header(one)) as journal:
-                run(one, Serial(), journal, answer=stub, window=16)
+            with StudyJournal(folder / "out.jsonl", header(design)) as journal:
+                run(design, Serial(), journal, answer=stub, window=16)
         return tracemalloc.get_traced_memory()[1]
     finally:
         tracemalloc.stop()
@@ -283,10 +285,10 @@ def test_statistics_are_those_of_the_rows() -> None:
         for k, (name, value) in enumerate([("flapwise 1", 1.0), ("edgewise 1", 2.0), ("flapwise 1", 6.0)])
     ]
     failed = Row(blade="b", sample=3, properties={}, omega_rad_s=1.0, reason="unstable")
-    (one,) = spreads([*results, failed]).to_dict("records")
-    assert (one["name"], one["samples"], one["mean"]) == ("flapwise 1", 3, 3.0)
-    assert one["deviation"] == pytest.approx(np.sqrt(7.0))
-    assert (one["low"], one["high"]) == (pytest.approx(1.1), pytest.approx(5.6))  # between the ordered values
+    (spread,) = spreads([*results, failed]).to_dict("records")
+    assert (spread["name"], spread["samples"], spread["mean"]) == ("flapwise 1", 3, 3.0)
+    assert spread["deviation"] == pytest.approx(np.sqrt(7.0))
+    assert (spread["low"], spread["high"]) == (pytest.approx(1.1), pytest.approx(5.6))  # between the ordered values
 
 
 def test_a_row_that_is_not_one_is_not_read(tmp_path: Path) -> None:

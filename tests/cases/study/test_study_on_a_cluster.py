@@ -23,11 +23,11 @@ SAMPLES, KILLS = 80, 20
 def test_workers_killed_at_twenty_random_moments(tmp_path: Path) -> None:
     seed = random.randrange(10**6)
     print(f"seed of the moments: {seed}")  # shown if the test fails
-    one = study(tmp_path, samples=SAMPLES)
-    serial = solved(one, tmp_path / "serial.jsonl")
+    design = study(tmp_path, samples=SAMPLES)
+    serial = solved(design, tmp_path / "serial.jsonl")
     with clusters.local(2) as cluster, executor(scheduler=cluster.scheduler_address) as pool:
         killer = clusters.Killer(cluster, SAMPLES, KILLS, seed, delay=0.1)
-        solution = solved(one, tmp_path / "cluster.jsonl", pool, on_progress=killer)
+        solution = solved(design, tmp_path / "cluster.jsonl", pool, on_progress=killer)
         killer.wait()
     assert len(set(killer.killed)) == KILLS
     assert len(solution) == 1 + SAMPLES * 2 * 3
@@ -55,8 +55,8 @@ def test_a_driver_that_is_killed_again_and_again(tmp_path: Path) -> None:
     seed = random.randrange(10**6)
     print(f"seed of the moments: {seed}")
     draw = random.Random(seed)
-    one, path = study(tmp_path, samples=SAMPLES), tmp_path / "out.jsonl"
-    serial = solved(one, tmp_path / "serial.jsonl")
+    design, path = study(tmp_path, samples=SAMPLES), tmp_path / "out.jsonl"
+    serial = solved(design, tmp_path / "serial.jsonl")
     kills = 0
     for _ in range(5):
         child = start(tmp_path, "--workers", "2")
@@ -76,8 +76,8 @@ def test_a_driver_that_is_killed_again_and_again(tmp_path: Path) -> None:
 @pytest.mark.nightly
 @pytest.mark.parametrize("where", ["processes", "cluster"])
 def test_an_interrupted_study_has_status_130_and_continues(where: str, tmp_path: Path) -> None:
-    one, path = study(tmp_path, samples=SAMPLES), tmp_path / "out.jsonl"
-    serial = solved(one, tmp_path / "serial.jsonl")
+    design, path = study(tmp_path, samples=SAMPLES), tmp_path / "out.jsonl"
+    serial = solved(design, tmp_path / "serial.jsonl")
     with clusters.local(1) as cluster:
         options = ["--workers", "1"] if where == "processes" else ["--scheduler", cluster.scheduler_address]
         child = start(tmp_path, *options)
@@ -107,5 +107,5 @@ def test_a_scheduler_that_is_lost_leaves_the_answers_and_status_3(tmp_path: Path
     assert child.returncode == 3, err
     assert "southwell: workers are lost (the Dask scheduler is lost): " in err
     assert "Traceback" not in err
-    one = study(tmp_path, samples=SAMPLES)
-    assert solved(one, path) == solved(one, tmp_path / "serial.jsonl")
+    design = study(tmp_path, samples=SAMPLES)
+    assert solved(design, path) == solved(design, tmp_path / "serial.jsonl")

@@ -53,9 +53,11 @@ FOOLING = (
 def run() -> Run:
     """All codes made to fool the judge, on one case at one speed."""
     case = library.load(PARK)
-    one = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
+    single_speed = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(blades(one), [f"southwell.tests.support.fooling:{c}" for c in FOOLING], executor, parts=False)
+        return matrix.run(
+            blades(single_speed), [f"southwell.tests.support.fooling:{c}" for c in FOOLING], executor, parts=False
+        )
 
 
 def of(code: str) -> list[Cell]:

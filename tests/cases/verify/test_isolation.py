@@ -62,8 +62,8 @@ def case(tmp_path: Path) -> Case:
 
 
 def written(key: str, folder: Path) -> str:
-    (one,) = (m for m in TABLE if f"{m.when}-{m.name}" == key)
-    return one.write(folder)
+    (misdeed,) = (m for m in TABLE if f"{m.when}-{m.name}" == key)
+    return misdeed.write(folder)
 
 
 def run(case: Case, *codes: str) -> Run:

@@ -53,8 +53,8 @@ def about(blade: Blade, offset: np.ndarray) -> Blade:
 
 def test_the_shift_is_that_of_a_rigid_body() -> None:
     """A point mass on the old axis has, about the new one, the first and second moments of −d."""
-    one = replace(blade(np.random.default_rng(0)), mass=np.repeat(section_mass(2.0), 4, axis=0))
-    moved = about(one, OFFSET).mass[0]
+    altered = replace(blade(np.random.default_rng(0)), mass=np.repeat(section_mass(2.0), 4, axis=0))
+    moved = about(altered, OFFSET).mass[0]
     np.testing.assert_allclose(moved[3:, :3], 2.0 * sp.skew(-OFFSET), atol=1e-15)
     np.testing.assert_allclose(np.diagonal(moved)[3], 2.0 * (0.17**2 + 0.09**2), rtol=1e-14)
 

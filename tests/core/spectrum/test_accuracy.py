@@ -127,8 +127,8 @@ def test_rigid_stretch_is_rigid_within_the_uncertainty(omega: float) -> None:
     unsure = np.abs(fine / coarse - 1.0) / 15.0
     refined, given = solve.modes(stiff, omega, count=2), solve.modes(stiff, omega, 64, 2)
     assert refined.uncertainty.max() < 1e-6
-    for one in (refined, given):
-        assert (np.abs(one.frequencies / true - 1.0) <= one.uncertainty + unsure).all()
+    for answer in (refined, given):
+        assert (np.abs(answer.frequencies / true - 1.0) <= answer.uncertainty + unsure).all()
 
 
 def test_the_reference_of_a_comparison_is_rigid_too() -> None:
@@ -137,17 +137,17 @@ def test_the_reference_of_a_comparison_is_rigid_too() -> None:
     (result,) = core_solver.converged(stiff, [30.0], Compare(modes=2), ALL_EFFECTS)
     assert isinstance(result, core_solver.Converged)
     frequencies = solve.modes(stiff, 30.0, count=2).frequencies
-    for one, true in zip(result.modes, frequencies, strict=True):
-        assert one.estimate is not None
-        assert one.estimate.uncertainty is not None
-        assert abs(one.estimate.value / true - 1.0) <= one.estimate.uncertainty + 1e-8 < 1e-4
+    for answer, true in zip(result.modes, frequencies, strict=True):
+        assert answer.estimate is not None
+        assert answer.estimate.uncertainty is not None
+        assert abs(answer.estimate.value / true - 1.0) <= answer.estimate.uncertainty + 1e-8 < 1e-4
 
 
 def test_a_sweep_agrees_with_single_speeds_within_the_uncertainty() -> None:
     speeds = [0.0, 10.0, 30.0]
-    for one in solve.sweep(cable(1e3), speeds, count=3):
-        alone = solve.modes(cable(1e3), one.omega, count=3)
-        assert (np.abs(one.frequencies / alone.frequencies - 1.0) <= one.uncertainty + alone.uncertainty).all()
+    for answer in solve.sweep(cable(1e3), speeds, count=3):
+        alone = solve.modes(cable(1e3), answer.omega, count=3)
+        assert (np.abs(answer.frequencies / alone.frequencies - 1.0) <= answer.uncertainty + alone.uncertainty).all()
 
 
 def test_richardsons_extrapolation_of_a_known_sequence() -> None:

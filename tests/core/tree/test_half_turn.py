@@ -20,12 +20,12 @@ def test_logarithm_near_half_a_turn(short: float) -> None:
         across = np.eye(3) - np.outer(axis, axis)
         turn = np.outer(axis, axis) + np.cos(angle) * across + np.sin(angle) * sp.skew(axis)
         pose = sp.pose(turn, rng.normal(size=3))
-        one = sp.log(pose)
-        assert np.linalg.norm(one[3:]) == pytest.approx(angle, abs=1e-14)
-        assert abs(one[3:] @ axis) == pytest.approx(angle, abs=1e-12)
+        logarithm = sp.log(pose)
+        assert np.linalg.norm(logarithm[3:]) == pytest.approx(angle, abs=1e-14)
+        assert abs(logarithm[3:] @ axis) == pytest.approx(angle, abs=1e-12)
         if short > 1e-9:  # the sense is lost where the skew part is rounding
-            assert one[3:] @ axis > 0
-        np.testing.assert_allclose(sp.exp(one), pose, atol=1e-11)
+            assert logarithm[3:] @ axis > 0
+        np.testing.assert_allclose(sp.exp(logarithm), pose, atol=1e-11)
 
 
 @pytest.mark.parametrize("axis", np.eye(3), ids="xyz")

@@ -27,9 +27,20 @@ def output():
 
 def frequencies(method, elements, EA, ratio):
     """The four lowest, rad/s; ``ratio`` of the stiffness in one plane to that in the other."""
-    node, none, one = np.arange(1, elements + 2), np.zeros(elements + 1), np.ones(elements)
+    node, none, ones = np.arange(1, elements + 2), np.zeros(elements + 1), np.ones(elements)
     clamped = [np.array([1]), *[np.array([1e30])] * 6]
-    section = (one, one, one, 1e-4 * one, EI / EA * one, ratio * EI / EA * one, EA * one, EA * one, 0 * one, MASS * one)
+    section = (
+        ones,
+        ones,
+        ones,
+        1e-4 * ones,
+        EI / EA * ones,
+        ratio * EI / EA * ones,
+        EA * ones,
+        EA * ones,
+        0 * ones,
+        MASS * ones,
+    )
     frame = f3.Frame(
         f3.NodeData(node, np.linspace(0, LENGTH, elements + 1), none, none, none),
         f3.ReactionData(*clamped, rigid=1e30),

@@ -25,8 +25,8 @@ def middle(length, element):
 
 def main():
     print(f"scikit-fem {version('scikit-fem')}")
-    one = fem.ElementLineHermite()
-    first, again, new = middle(1.0, one), middle(2.0, one), middle(2.0, fem.ElementLineHermite())
+    element = fem.ElementLineHermite()
+    first, again, new = middle(1.0, element), middle(2.0, element), middle(2.0, fem.ElementLineHermite())
     print(f"length 1:                       {first:g} (expected 192)")
     print(f"length 2, the same element:     {again:g} (expected 24)")
     print(f"length 2, a new element:        {new:g} (expected 24)")

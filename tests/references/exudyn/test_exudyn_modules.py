@@ -37,5 +37,5 @@ def test_the_module_without_range_checks_gives_the_same_frequencies() -> None:
     fast, module = solved("")
     assert module in ("exudyn.exudynCPPfast", "exudyn.exudynCPP")  # the latter on a processor without AVX2
     assert [len(f) for f in fast] == [6, 6]
-    for one, other in zip(fast, checked, strict=True):
-        np.testing.assert_allclose(one, other, rtol=1e-9)
+    for answer, other in zip(fast, checked, strict=True):
+        np.testing.assert_allclose(answer, other, rtol=1e-9)

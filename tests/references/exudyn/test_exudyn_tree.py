@@ -107,16 +107,16 @@ def test_elements_are_shorter_at_the_root_only_where_a_layer_is_thin():
 @pytest.mark.parametrize(("code", "order"), [(TREE, 2), (REISSNER, 4)], ids=["tree", "Reissner"])
 def test_elements_at_steps_do_not_count_as_refinement(code, order):
     """They are as long at every refinement: with them, the observed orders were 2.3 and 4.5."""
-    one = unit()
-    stations = np.array([0.0, 0.3, 0.3 + 1e-5, 0.6, 0.6 + 1e-5, 1.0]) * one.length
+    uniform = unit()
+    stations = np.array([0.0, 0.3, 0.3 + 1e-5, 0.6, 0.6 + 1e-5, 1.0]) * uniform.length
     factor = np.array([1.0, 1.0, 0.5, 0.5, 0.25, 0.25])[:, None, None]
     stepped = Blade(
         "stepped",
         stations,
-        np.where(np.isinf(one.stiffness[:1]), np.inf, one.stiffness[:1] * factor),
-        one.mass[:1] * factor,
+        np.where(np.isinf(uniform.stiffness[:1]), np.inf, uniform.stiffness[:1] * factor),
+        uniform.mass[:1] * factor,
         np.zeros(6),
-        hub_radius=one.hub_radius,
+        hub_radius=uniform.hub_radius,
     )
     modes = [code.solve(stepped, 0.0, n, 4) for n in (12, 24, 48)]
     assert [m.elements for m in modes] == [12, 24, 48]

@@ -140,9 +140,9 @@ class Frame:
 
 def test_modes_in_one_plane_from_stodolas_iteration_are_rejected() -> None:
     """Three modes in one plane, pitched: rejected from Stodola's iteration; accepted in two planes or by subspace iteration."""
-    one, two = [[1.0, 2.0]] * 3, [[1.0, 2.0], [2.0, 4.0], [2.0, -1.0]]
+    first, second = [[1.0, 2.0]] * 3, [[1.0, 2.0], [2.0, 4.0], [2.0, -1.0]]
     with pytest.raises(RuntimeError, match="missed the modes of one plane"):
-        frame3dd_worker.modes(Frame(one, set()), 3)
-    for frame in (Frame(two, set()), Frame(one, {5})):
+        frame3dd_worker.modes(Frame(first, set()), 3)
+    for frame in (Frame(second, set()), Frame(first, {5})):
         assert frame3dd_worker.modes(frame, 3)["frequencies"] == pytest.approx([2 * np.pi, 4 * np.pi, 6 * np.pi])
-    assert len(frame3dd_worker.modes(Frame(one, {3}), 2)["shapes"]) == 2
+    assert len(frame3dd_worker.modes(Frame(first, {3}), 2)["shapes"]) == 2

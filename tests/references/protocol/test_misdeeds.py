@@ -81,11 +81,11 @@ def test_invalid_declarations_are_quoted(folder: Path) -> None:
     """In one process, as none of them ends it; each is a separate code."""
     paths = declaring(folder)
     said = description._asked({path: registry.address(path) for path in paths.values()}, [], LIMITS)
-    for (line, reported), one in zip(DECLARATIONS.items(), said, strict=True):
-        assert one.failure, line
-        assert one.failure.kind == "nonsense", line
-        assert reported in one.failure.reason, (line, one.failure.reason)
-        assert one.name in ("misdeed", paths[line])
+    for (line, reported), description_ in zip(DECLARATIONS.items(), said, strict=True):
+        assert description_.failure, line
+        assert description_.failure.kind == "nonsense", line
+        assert reported in description_.failure.reason, (line, description_.failure.reason)
+        assert description_.name in ("misdeed", paths[line])
 
 
 def test_invalid_answers_are_quoted_and_affect_no_other(folder: Path) -> None:

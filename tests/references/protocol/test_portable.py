@@ -47,10 +47,10 @@ def test_a_spawned_code_gives_the_answers_of_a_forked_one(monkeypatch: pytest.Mo
     spawned = worker.answers("exact-beam", BLADE, runs, Limits())
     monkeypatch.undo()
     forked = worker.answers("exact-beam", BLADE, runs, Limits())
-    for one, other in zip(spawned, forked, strict=True):
-        assert not isinstance(one, Failure)
+    for answer, other in zip(spawned, forked, strict=True):
+        assert not isinstance(answer, Failure)
         assert not isinstance(other, Failure)
-        np.testing.assert_array_equal(one.frequencies, other.frequencies)
+        np.testing.assert_array_equal(answer.frequencies, other.frequencies)
 
 
 MODULES = {

@@ -24,8 +24,8 @@ def test_several_writers_lose_nothing(file: Path) -> None:
 
     with ThreadPoolExecutor(4) as pool:
         list(pool.map(write, range(4)))
-    (one,) = Store(file).kept()
-    assert one.count == 200
+    (answer,) = Store(file).kept()
+    assert answer.count == 200
 
 
 def test_a_new_file_is_opened_by_many_at_once(tmp_path: Path) -> None:
@@ -51,9 +51,9 @@ def test_a_damaged_answer_is_found_and_removed(file: Path) -> None:
 def test_prune_removes_what_is_old(file: Path) -> None:
     kept = Store(file)
     kept.put("a", "x", b"1.0")
-    (one,) = kept.kept()
-    assert kept.prune(one.last - 1.0) == 0
-    assert kept.prune(one.last + 1.0) == 1
+    (answer,) = kept.kept()
+    assert kept.prune(answer.last - 1.0) == 0
+    assert kept.prune(answer.last + 1.0) == 1
     assert kept.kept() == []
 
 

@@ -77,11 +77,11 @@ def test_only_what_is_missing_is_asked_for(asked: Asked) -> None:
     ],
 )
 def test_every_part_of_the_question_counts(asked: Asked, changed: dict[str, Any]) -> None:
-    one = {"runs": [RUNS[1]]}
-    ask(**one)
-    ask(**one)
+    request = {"runs": [RUNS[1]]}
+    ask(**request)
+    ask(**request)
     assert len(asked) == 1
-    ask(**(one | changed))
+    ask(**(request | changed))
     assert len(asked) == 2
 
 

@@ -117,13 +117,14 @@ def test_iea_15_in_hawc2_and_in_beamdyn_is_one_blade() -> None:
         if name != "EA":  # of which the file of 19 columns has up to 5 % less or more
             np.testing.assert_allclose(getattr(a, name)[inner], getattr(c, name)[inner], rtol=2e-2, err_msg=name)
     # the triangle of mass, tension and shear centre: its sides, and which way round it goes
-    for one, two in (("mass", "tension"), ("tension", "shear"), ("shear", "mass")):
+    for first, second in (("mass", "tension"), ("tension", "shear"), ("shear", "mass")):
         sides = [
-            np.linalg.norm(getattr(k, f"{one}_centre") - getattr(k, f"{two}_centre"), axis=1)[inner] for k in (a, b)
+            np.linalg.norm(getattr(k, f"{first}_centre") - getattr(k, f"{second}_centre"), axis=1)[inner]
+            for k in (a, b)
         ]
         np.testing.assert_allclose(sides[0], sides[1], atol=0.01)  # of up to 1 m
     legs = [(k.tension_centre - k.mass_centre, k.shear_centre - k.mass_centre) for k in (a, b)]
-    areas = [(one[:, 0] * two[:, 1] - one[:, 1] * two[:, 0])[inner] for one, two in legs]
+    areas = [(first[:, 0] * second[:, 1] - first[:, 1] * second[:, 0])[inner] for first, second in legs]
     assert np.abs(areas[0]).max() > 0.01
     np.testing.assert_allclose(areas[0], areas[1], atol=5e-3)
     rows = [line.split() for line in plain_file.read_text().splitlines() if len(line.split()) == 19]

@@ -131,9 +131,9 @@ def test_a_set_without_tower_has_a_rigid_one(machine: Deck) -> None:
 
 
 def test_motions_that_the_machine_lacks_are_refused(machine: Deck, healthy: AzimuthSet) -> None:
-    one = replace(machine, turbine=replace(machine.turbine, blades=2))
+    altered = replace(machine, turbine=replace(machine.turbine, blades=2))
     with pytest.raises(CaseError, match="2 in the deck"):
-        compared(healthy, one)
+        compared(healthy, altered)
     lacking = replace(machine, tower_shapes={})
     with pytest.raises(CaseError, match="stands on rigid ground"):
         compared(healthy, lacking)
