@@ -9,7 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.campbell.encounters import Encounter
-from ..shared.style import INK, MUTED, WIDTH, house, title
+from ..shared.style import INK, MUTED, WIDTH, plot_style, title
 from ..shared.units import Units
 from .marks import blend
 from .tables import gap
@@ -33,7 +33,7 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure | None:
         return None
     across = min(ACROSS, len(met))
     rows, panel, low = -(-len(met) // across), 2.35 + 0.5 * (ACROSS - across), 0.25
-    with house():
+    with plot_style():
         height = low + 0.35 + rows * panel
         figure = Figure((WIDTH, height))
         for place, e in enumerate(met):

@@ -13,7 +13,7 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.plan.user_results import UserResults
 from ...core.participation import FAMILIES
 from ..shared.certain import certain
-from ..shared.style import MUTED, WIDTH, beside, house, key, title
+from ..shared.style import MUTED, WIDTH, key, label_ends, plot_style, title
 from ..shared.units import Units
 from . import points
 from .marks import DASHES, band, band_label, blend, legend, marks, near, rays
@@ -39,7 +39,7 @@ def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[U
     reach only the lowest of many modes, these have a separate scale and the higher modes are above it on a coarser
     one. Points of ``user_results``, such as those of a test rig, are drawn over the lines.
     """
-    with house():
+    with plot_style():
         low, height = 0.95, 5.9
         figure = Figure((WIDTH, height))
         longest = max(len(_label(diagram, t, units)) for t in range(diagram.tracks.count))
@@ -113,7 +113,7 @@ def _panel(axes: Axes, diagram: Campbell, units: Units, limits: tuple[float, flo
     band(axes, diagram, units)
     ends = [end for t in range(diagram.tracks.count) for end in _mode(axes, diagram, t, units)]
     marks(axes, diagram, units)
-    beside(axes, [end for end in ends if limits[0] < end[0] <= limits[1]])
+    label_ends(axes, [end for end in ends if limits[0] < end[0] <= limits[1]])
 
 
 def _below(diagram: Campbell, units: Units) -> str:

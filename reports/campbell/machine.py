@@ -11,7 +11,7 @@ from matplotlib.figure import Figure
 from ...cases.campbell.machine import Line, MachineDiagram
 from ...cases.input import atomic
 from ..shared.certain import certain, relative
-from ..shared.style import COLOURS, MUTED, WIDTH, house, save, title
+from ..shared.style import COLOURS, MUTED, WIDTH, plot_style, save, title
 from ..shared.units import Units
 from . import cover
 from .cover import Origin
@@ -96,7 +96,7 @@ def _crossings(diagram: MachineDiagram, units: Units) -> Sheet:
 
 def draw(diagram: MachineDiagram, units: Units, heading: str) -> Figure:
     """Draw the lines over speed, labelled at their ends, with rays of n per revolution."""
-    with house():
+    with plot_style():
         figure = Figure((WIDTH, 5.9))
         axes = figure.add_axes((0.07, 0.1, 0.62, 0.78))
         speeds = diagram.omega * units.speeds
@@ -154,7 +154,7 @@ def write(
     figure = draw(diagram, units, f"{name}: natural frequencies versus rotor speed")
     vector, raster, table = folder / "campbell.svg", folder / "campbell.png", folder / "campbell.csv"
     save(figure, vector)
-    with house():
+    with plot_style():
         atomic.through(
             raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
         )

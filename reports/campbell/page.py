@@ -11,7 +11,7 @@ from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.plan.user_results import UserResults
 from ...cases.writers.elastodyn_shapes import as_it_is, polynomials
-from ..shared.style import house, save
+from ..shared.style import plot_style, save
 from ..shared.units import Units
 from . import cover, csv_tables, encounters, shapes, span
 from . import figure as figures
@@ -80,7 +80,7 @@ def shapes_at(diagram: Campbell) -> int:
 def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
     save(figure, vector)
-    with house():
+    with plot_style():
         atomic.through(
             raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
         )

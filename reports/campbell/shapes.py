@@ -19,7 +19,7 @@ from ...cases.writers.elastodyn_shapes import ELASTODYN_NAMES, POWERS, Polynomia
 from ...core.modes import STATIONS
 from ...core.participation import describe_fractions, gyration, in_blade_axes
 from ..shared.certain import certain
-from ..shared.style import FAINT, MUTED, WIDTH, house, key, spread, title
+from ..shared.style import FAINT, MUTED, WIDTH, key, plot_style, spread, title
 from ..shared.units import Units
 from .marks import DASHES, FAMILY_COLOURS
 from .tables import Sheet
@@ -65,7 +65,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
     arm = gyration(diagram.blade)
     order, shapes = scaled(diagram, k, arm)
     rows = -(-len(order) // ACROSS)
-    with house():
+    with plot_style():
         low, panel = 0.75, 1.9
         height = low + 0.5 + rows * panel
         figure = Figure((WIDTH, height))

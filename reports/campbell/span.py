@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from ...cases.input import atomic
 from ...cases.input.properties import Sections, sections
 from ...core.blade import Blade
-from ..shared.style import COLOURS, MUTED, WIDTH, decades, house, power
+from ..shared.style import COLOURS, MUTED, WIDTH, decades, plot_style, power
 
 Array = NDArray[np.float64]
 Lines = list[tuple[str, Array]]
@@ -37,7 +37,7 @@ def draw(blade: Blade) -> Figure:
             False,
         ),
     ]
-    with house():
+    with plot_style():
         figure = Figure(figsize=(WIDTH, 7.2))
         figure.suptitle(f"{blade.name}: properties along the span", x=0.01, ha="left", fontweight="bold", fontsize=11.5)
         figure.subplots_adjust(0.095, 0.07, 0.985, 0.91, 0.24, 0.34)
@@ -99,7 +99,7 @@ def write(blade: Blade, folder: Path) -> list[Path]:
     """Write ``span.svg`` and ``span.png`` and return their paths; the same blade gives the same bytes."""
     figure = draw(blade)
     paths = [folder / "span.svg", folder / "span.png"]
-    with house():
+    with plot_style():
         atomic.through(paths[0], lambda file: figure.savefig(file, format="svg", metadata={"Date": None}))
         atomic.through(paths[1], lambda file: figure.savefig(file, format="png", dpi=150, metadata={"Software": None}))
     return paths

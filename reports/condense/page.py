@@ -20,7 +20,7 @@ FILE = "condensation.md"
 FORCES = ("axial", "along y", "along z", "torsion", "about y", "about z")
 
 
-def beside(folder: Path) -> str:
+def include_page(folder: Path) -> str:
     """The page of ``southwell condense`` in a report's folder, one heading level lower; empty if there is none."""
     path = folder / FILE
     return re.sub(r"^#", "##", read_bytes(path).decode(errors="replace"), flags=re.MULTILINE) if path.exists() else ""

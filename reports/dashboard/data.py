@@ -11,14 +11,14 @@ from ...cases.judge.results import Cell, Control, Run
 from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
 from ..shared import summary
-from ..shared.summary import SYMBOL, WORST_FIRST, broad, columns, plus_minus, size
+from ..shared.summary import SYMBOL, WORST_FIRST, columns, plus_minus, size, table_column
 from ..shared.units import BY_KEY, Units
 from ..verification import code_pages, controls, evidence, paper_table, witnesses
 from ..verification.figures import core_lines
 from . import properties
 from .moving import moving
 
-LONGEST = 80
+MAX_NAME = 80
 """Largest number of characters before the hash in a page's name; file systems allow 255 bytes."""
 
 
@@ -27,7 +27,7 @@ def page(name: str, kind: str = "case") -> str:
 
     Names are unique, also on file systems that ignore case.
     """
-    plain = re.sub(r"[^a-z0-9.-]", "_", name.lower())[:LONGEST]
+    plain = re.sub(r"[^a-z0-9.-]", "_", name.lower())[:MAX_NAME]
     number = "" if plain == name else "-" + hashlib.sha256(name.encode()).hexdigest()[:8]
     return f"{kind}-{plain}{number}.html"
 
@@ -39,7 +39,7 @@ def verdicts() -> list[dict[str, str]]:
 
 def first(run: Run, name: str) -> dict[str, Any]:
     """The matrix: cells, cases, columns, and results of the negative controls."""
-    cases, heads, pages = summary.cases(run), columns(run.cells, broad), code_names(run)
+    cases, heads, pages = summary.cases(run), columns(run.cells, table_column), code_names(run)
     titles = {s.case: s.title for s in run.settings}
     return {
         "run": name,
@@ -56,7 +56,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
         "cells": [
             [
                 cases.index(c.case),
-                heads.index(broad(c)),
+                heads.index(table_column(c)),
                 round(c.omega * units(run, c.case).speeds, 6),
                 c.name,
                 WORST_FIRST.index(c.verdict),
@@ -102,7 +102,7 @@ def _control(control: Control) -> dict[str, Any]:
 
 def shared(run: Run, head: str) -> str:
     """What the codes of a column share with core."""
-    return ", ".join(dict.fromkeys(c.shares for c in run.cells if broad(c) == head and c.shares))
+    return ", ".join(dict.fromkeys(c.shares for c in run.cells if table_column(c) == head and c.shares))
 
 
 def units(run: Run, case: str) -> Units:

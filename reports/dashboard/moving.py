@@ -26,7 +26,7 @@ FARTHEST, STEEPEST = 0.12, 0.5
 HALF_CHORD = 0.035
 """Half chord of the blade's ribbon, relative to the rotor's radius; the rows have no chord."""
 
-SAME = 0.01
+MAX_CHANGE = 0.01
 """Largest relative difference of a frequency between this blade and the blade of the run."""
 
 
@@ -74,7 +74,7 @@ def _at(solved: Modes, names: Sequence[str], radius: float, u: Units) -> dict[st
 def _same(solved: Modes, cells: Sequence[Cell]) -> bool:
     """Whether the run's lowest frequency at this speed is among the computed ones."""
     references = [c.full for c in cells if c.omega == solved.omega and c.full is not None]
-    return not references or bool(np.abs(solved.frequencies / min(references) - 1.0).min() < SAME)
+    return not references or bool(np.abs(solved.frequencies / min(references) - 1.0).min() < MAX_CHANGE)
 
 
 def _blade(case: str) -> Blade | None:

@@ -25,7 +25,7 @@ def of_history(history: History) -> dict[str, Any]:
     entries = history.entries
     return {
         "runs": [_run(e) for e in entries],
-        "torn": list(history.truncated),
+        "truncated": list(history.truncated),
         "verdicts": verdicts(),
         "steps": moves(entries),
         "cells": _cells(entries),

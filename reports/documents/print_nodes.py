@@ -22,7 +22,7 @@ SIZE, PADDING = 6.6, 4.5
 LONG = 400
 """Rows with more characters than this in a cell may be broken, since they could be higher than a page."""
 
-LONGEST = {"regular": 40, "bold": 40, "mono": 110}
+MAX_WORD = {"regular": 40, "bold": 40, "mono": 110}
 """Longest words in characters; longer ones may be broken anywhere. Half the width of the page; of code, three quarters."""
 
 
@@ -129,4 +129,4 @@ def words(cell: SyntaxTreeNode) -> str:
 
 def _broken(text: str, face: str) -> str:
     """Text with zero-width spaces in overlong words, such as paths and digests, which would leave the page."""
-    return re.sub(rf"(\S{{{LONGEST[face]}}})(?=\S)", "\\1\u200b", text)
+    return re.sub(rf"(\S{{{MAX_WORD[face]}}})(?=\S)", "\\1\u200b", text)

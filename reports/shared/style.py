@@ -66,7 +66,7 @@ class Look:
 
 
 @contextmanager
-def house() -> Iterator[None]:
+def plot_style() -> Iterator[None]:
     """Apply the settings under which figures are drawn and saved, regardless of the user's Matplotlib settings."""
     import matplotlib as mpl
 
@@ -130,7 +130,7 @@ def title(figure: "Figure", text: str, below: str = "") -> None:
 def svg(figure: "Figure") -> str:
     """The figure as SVG with its text as text, without date or random identifiers."""
     out = StringIO()
-    with house():
+    with plot_style():
         figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "southwell"})
     return compact(out.getvalue())
 
@@ -161,7 +161,7 @@ def spread(targets: Sequence[float], gap: float) -> list[float]:
     return out
 
 
-def beside(axes: "Axes", labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
+def label_ends(axes: "Axes", labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
     """Draw labels at the right edge of ``axes``, each as near to its height (data) as its neighbours allow.
 
     Args:

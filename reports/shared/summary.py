@@ -126,7 +126,7 @@ def column(cell: Cell) -> str:
     return "source's discretisation" if cell.role == "discretisation" else cell.code
 
 
-def broad(cell: Cell) -> str:
+def table_column(cell: Cell) -> str:
     """The column of a cell in a table of several cases, with all printed tables in one column."""
     return "printed tables" if cell.role == "table" else column(cell)
 

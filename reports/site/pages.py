@@ -126,8 +126,8 @@ def _results(case: str, stored: Sequence[Cell]) -> str:
     """The worst verdict and the largest difference of each code, from the stored rows; empty without any."""
     cells = [c for c in stored if c.case == case]
     rows = []
-    for code in summary.columns(cells, summary.broad):
-        group = [c for c in cells if summary.broad(c) == code]
+    for code in summary.columns(cells, summary.table_column):
+        group = [c for c in cells if summary.table_column(c) == code]
         verdict = summary.worst_verdict(group)
         if verdict in ("not run", "not applicable"):
             continue

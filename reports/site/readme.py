@@ -16,7 +16,7 @@ from ...cases.judge.results import Cell, Run
 from ...cases.store import results_file
 from ..shared import summary
 from ..shared.markdown import plain, table
-from ..shared.summary import broad, columns
+from ..shared.summary import columns, table_column
 from ..verification.case_tables import comparison
 from ..verification.report import LEGEND, heat, unasked, units
 
@@ -59,8 +59,8 @@ def condense(run: Run) -> Run:
     cells: list[Cell] = []
     for case in summary.cases(run):
         own = [c for c in run.cells if c.case == case and c.code not in ISOLATED]
-        for name in columns(own, broad):
-            group = [c for c in own if broad(c) == name]
+        for name in columns(own, table_column):
+            group = [c for c in own if table_column(c) == name]
             grave = summary.worst_verdict(group)
             cells.append(summary.worst(group) or next(c for c in group if c.verdict == grave))
     table = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]

@@ -9,7 +9,7 @@ from ...cases.judge.measured import COVERAGE
 from ...cases.validation import rotating_beams
 from ...cases.validation.points import Point
 from ..shared.markdown import plain, table
-from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house
+from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, plot_style
 from .tables import by_line, every
 
 FIGURE = "validation-beams.svg"
@@ -38,7 +38,7 @@ def figure(beams: Mapping[str, Sequence[Point]]) -> Figure:
         for d in [rotating_beams.data()[name]]
         for sweep in d["sweep"]
     ]
-    with house():
+    with plot_style():
         fig = Figure(figsize=(WIDTH, 6.0), layout="constrained")
         for k, (heading, points) in enumerate(panels, 1):
             rpm_max = max(p.rpm for p in points)

@@ -16,7 +16,7 @@ from ...cases.validation.comparison import Simulated
 from ...cases.validation.points import Point
 from ..shared.console import output
 from ..shared.markdown import plain, table
-from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, house, svg
+from ..shared.style import COLOURS, MARKERS, MUTED, WIDTH, plot_style, svg
 from . import beam_section
 from .tables import by_line, every
 
@@ -65,7 +65,7 @@ def summary(points: Sequence[Point]) -> list[dict[str, str]]:
 
 def figure(model: Simulated, points: Sequence[Point]) -> Figure:
     """Draw measured points and the model's frequencies against rotor speed."""
-    with house():
+    with plot_style():
         fig = Figure(figsize=(WIDTH, 5.2), layout="constrained")
         axes = fig.add_subplot()
         rpm = np.linspace(0.0, comparison.SPEEDS[-1], 81)

@@ -10,7 +10,7 @@ from matplotlib.lines import Line2D
 from matplotlib.ticker import FixedLocator, FuncFormatter, NullLocator
 
 from ...cases.judge.results import Cell, Level, Run
-from ..shared.style import FAINT, WIDTH, Look, band, decades, house, key, looks, spread, title
+from ..shared.style import FAINT, WIDTH, Look, band, decades, key, looks, plot_style, spread, title
 from ..shared.summary import column, columns
 from ..shared.units import Units
 
@@ -43,7 +43,7 @@ def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
     across = min(3, len(modes))
     down = -(-len(modes) // across)
     drawn = dict.fromkeys(column(cells[v.omega, v.mode, v.code]) for v in levels)
-    with house():
+    with plot_style():
         low = band(len(drawn))
         height = low + 0.62 + 2.05 * down
         figure = Figure((WIDTH, height))

@@ -41,7 +41,7 @@ VERDICT_OF: dict[Answer, Verdict] = {"Yes": "pass", "No": "fail", "Open": "incon
 VISIBLE, CERTAIN = 1e-4, 3.0
 """Smallest difference of a pass that is stated apart, also as a multiple of its uncertainty."""
 
-SAME: tuple[Verdict, ...] = ("fail", "inconclusive", "pass", "coarse")
+COMPARED: tuple[Verdict, ...] = ("fail", "inconclusive", "pass", "coarse")
 """Verdicts on a difference from core with the same effects, worst first."""
 
 
@@ -189,9 +189,9 @@ def rows(run: Run) -> list[dict[str, str]]:
 
 
 def farthest(cells: Iterable[Cell]) -> Cell | None:
-    """The cell of the worst verdict in ``SAME`` whose difference is the largest relative to its target."""
+    """The cell of the worst verdict in ``COMPARED`` whose difference is the largest relative to its target."""
     cells = list(cells)
-    for verdict in SAME:
+    for verdict in COMPARED:
         if judged := [c for c in cells if c.verdict == verdict]:
             return max(judged, key=lambda c: abs(c.difference or 0.0) / c.target)
     return None
@@ -204,7 +204,7 @@ def _shown(run: Run, cell: Cell | None) -> str:
         units = _units(run, cell)
         return f"{SYMBOL[cell.verdict]} {cell.case}, {summary.column(cell)}, {units.at(cell.omega)}: no answer: {cell.reason}"
     cause = f"cause: {cell.reason.partition(';')[0]}"
-    more = f"target {summary.allowed(cell.target)}" if cell.verdict in SAME else cause
+    more = f"target {summary.allowed(cell.target)}" if cell.verdict in COMPARED else cause
     if cell.verdict == "measured":
         more = _statement(cell)
     return f"{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}: {where(run, cell)}; {more}"

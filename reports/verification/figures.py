@@ -10,14 +10,28 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...cases.judge.results import Cell, Run, Verdict
-from ..shared.style import FAINT, INK, LINES, MUTED, WIDTH, Look, band, beside, decades, house, key, looks, title
+from ..shared.style import (
+    FAINT,
+    INK,
+    LINES,
+    MUTED,
+    WIDTH,
+    Look,
+    band,
+    decades,
+    key,
+    label_ends,
+    looks,
+    plot_style,
+    title,
+)
 from ..shared.summary import allowed, amount, column, columns, counts
 from ..shared.units import Units
 
 ORDERS = (1, 2, 3, 4, 5, 6, 8, 10, 12)
 """Orders n per revolution that are drawn as rays."""
 
-LONGEST = 22
+NAME_WIDTH = 22
 """Characters of a code's name in one line beside an axis."""
 
 
@@ -37,7 +51,7 @@ def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Fi
         return None
     answers = [c.value for c in (*cells, *data) if c.value is not None]
     shown = columns([c for c in cells if c.value is not None])
-    with house():
+    with plot_style():
         low = band(len(shown) + 1 + len(columns(data)))
         height = 4.6 + low
         figure = Figure((WIDTH, height))
@@ -57,7 +71,7 @@ def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Fi
             ends.append((float(curve[-1]), name))
         style = looks(among or columns(run.cells))
         handles = [*_markers(axes, style, cells, shown, units), *_data(axes, data, units)]
-        beside(axes, ends)
+        label_ends(axes, ends)
         axes.set_xticks([omega * units.speeds for omega in speeds])
         axes.set_xlabel(units.speed_label)
         axes.set_ylabel(units.frequency_label)
@@ -175,7 +189,7 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
         return None
     names, style = columns(cells), looks(among or columns(run.cells))
     tracks = max(c.mode for c in cells)
-    with house():
+    with plot_style():
         low, height = band(1), 1.36 + 0.6 * len(names)
         figure = Figure((WIDTH, height))
         axes = figure.add_axes((0.2, low / height, 0.58, 1 - (low + 0.55) / height))
@@ -190,7 +204,7 @@ def differences(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
             worst = max(own, key=lambda c: abs(c.difference or 0.0))
             text = f"{amount(worst.difference or 0.0, worst.target)}\n{worst.name}, {units.at(worst.omega)}"
             axes.annotate(text, (1.02, row), xycoords=("axes fraction", "data"), va="center", size=8)
-        axes.set_yticks(range(len(names)), [fill(name, LONGEST) for name in names])
+        axes.set_yticks(range(len(names)), [fill(name, NAME_WIDTH) for name in names])
         axes.tick_params(axis="y", length=0, pad=8)
         decades(axes.xaxis, 20)
         axes.set_xlabel("|difference| from Southwell with the same effects, relative, ± uncertainty")

@@ -15,7 +15,7 @@ from ..condense import page
 from ..shared import summary
 from ..shared.markdown import anchor, plain, table
 from ..shared.paths import file_name
-from ..shared.summary import SYMBOL, amount, broad, columns
+from ..shared.summary import SYMBOL, amount, columns, table_column
 from ..shared.units import BY_KEY, Units
 from . import case_tables, controls, diagnoses, error_budget, evidence, paper_table, properties, witnesses
 
@@ -49,7 +49,7 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
             atomic.write(figures / name, image)
             drawn.setdefault(case, []).append(f"figures/{name}")
     path = folder / "report.md"
-    atomic.write(path, render(run, drawn, condensed=page.beside(folder)))
+    atomic.write(path, render(run, drawn, condensed=page.include_page(folder)))
     return path
 
 
@@ -149,9 +149,9 @@ def unasked(run: Run) -> str:
 
 def _by_column(cells: Sequence[Cell]) -> dict[str, list[Cell]]:
     """The cells of each column, in the order of the columns."""
-    by_name: dict[str, list[Cell]] = {name: [] for name in columns(cells, broad)}
+    by_name: dict[str, list[Cell]] = {name: [] for name in columns(cells, table_column)}
     for cell in cells:
-        by_name[broad(cell)].append(cell)
+        by_name[table_column(cell)].append(cell)
     return by_name
 
 

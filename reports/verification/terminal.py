@@ -11,7 +11,7 @@ from ...cases.campbell.tracked import TrackedMode
 from ...cases.judge.results import Cell, Run, Verdict
 from ..shared import summary
 from ..shared.certain import certain, relative
-from ..shared.summary import SYMBOL, broad, columns
+from ..shared.summary import SYMBOL, columns, table_column
 from ..shared.table_columns import BETWEEN, fitting
 from ..shared.units import Units
 from . import controls as faults
@@ -41,8 +41,10 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
     """
     cases = [case.replace("/", "/\n ") for case in summary.cases(run)]
     first = max((len(line) for case in (*cases, "shares with Southwell") for line in case.split("\n")), default=0)
-    heads = {name: re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name) for name in columns(run.cells, broad)}
-    shares = {name: witnesses.shared([c for c in run.cells if broad(c) == name]) for name in heads}
+    heads = {
+        name: re.sub(r"[- ](?=\w{4})", lambda m: m[0].strip() + "\n", name) for name in columns(run.cells, table_column)
+    }
+    shares = {name: witnesses.shared([c for c in run.cells if table_column(c) == name]) for name in heads}
     widths = {
         name: max(NARROW, *(len(word) for word in f"{head} {shares[name]}".split())) for name, head in heads.items()
     }
@@ -54,7 +56,7 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
             out.add_column(escape(heads[name]), overflow="fold", min_width=widths[name])
         for case, shown in zip(summary.cases(run), cases, strict=True):
             cells = [c for c in run.cells if c.case == case]
-            out.add_row(escape(shown), *[_field([c for c in cells if broad(c) == name]) for name in part])
+            out.add_row(escape(shown), *[_field([c for c in cells if table_column(c) == name]) for name in part])
         if any(c.shares for c in run.cells):
             out.add_section()
             shown = [escape(shares[name]).replace(" ", "\n") for name in part]

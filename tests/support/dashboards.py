@@ -60,7 +60,7 @@ def hostile() -> Run:
 
 def kept(file: Path) -> Path:
     """Seven runs: at the fifth scikit-fem moves by 1e-6 in one case, at the sixth core does in another, the seventh lacks a
-    code; the last line is torn."""
+    code; the last line is truncated."""
     first = run()
     for k in range(7):
         cells = []

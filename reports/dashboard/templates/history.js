@@ -15,7 +15,7 @@ function versions(from, to) {
 }
 
 function historyPage() {
-  MAIN.append(make("h1", {}, "History"), make("p", {}, `${RUNS.length} runs`, DATA.torn.length ? `; left out, for they are cut short: line ${DATA.torn.join(", line ")} of the file` : "", "."));
+  MAIN.append(make("h1", {}, "History"), make("p", {}, `${RUNS.length} runs`, DATA.truncated.length ? `; truncated and left out: line ${DATA.truncated.join(", line ")} of the file` : "", "."));
   if (!RUNS.length) return;
   MAIN.append(table(["run", "commit", "date, UTC", "cells", "faults detected", "properties wrong", "machine", "new versions"], RUNS.map((r, k) => row(k + 1, make("td", { title: r.commit }, r.commit.slice(0, 12)), date(r),
     make("td", {}, ...r.counts.map(([v, n]) => make("span", { class: `chip v${v}`, title: DATA.verdicts[v].name }, `${n} ${DATA.verdicts[v].sign}`))),

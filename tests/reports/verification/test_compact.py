@@ -7,7 +7,7 @@ import matplotlib as mpl
 from matplotlib.figure import Figure
 
 from southwell.reports.shared.compact import compact
-from southwell.reports.shared.style import house, svg
+from southwell.reports.shared.style import plot_style, svg
 
 NUMBERS = re.compile(r"-?\d+(?:\.\d+)?")
 
@@ -18,7 +18,7 @@ def full(figure: Figure, monkeypatch) -> str:
 
 
 def drawing() -> Figure:
-    with house():
+    with plot_style():
         figure = Figure((4.0, 3.0))
         axes = figure.subplots()
         axes.plot([0.123456789, 2.0, 3.3333333], [1.0, 0.7654321, 2.0], "o-", label="code 1.2345678 #m0")

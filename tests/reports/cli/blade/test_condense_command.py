@@ -294,8 +294,8 @@ def test_wrong_arguments(arguments: tuple[str, ...], message: str, capsys: pytes
 
 
 def test_the_report_takes_the_page_up(tmp_path: Path) -> None:
-    assert condense_page.beside(tmp_path) == ""
+    assert condense_page.include_page(tmp_path) == ""
     (tmp_path / "condensation.md").write_text("# Title\n\n## Part\n\ntext # no heading\n")
-    text = condense_page.beside(tmp_path)
+    text = condense_page.include_page(tmp_path)
     assert text == "## Title\n\n### Part\n\ntext # no heading\n"
     assert text in matrix_report.render(Run(()), {}, text)
