@@ -86,6 +86,14 @@ def reference() -> Reference:
     return result
 
 
+def test_the_uncertainty_of_inputs_and_that_of_data_add_as_squares() -> None:
+    """The uncertainty is 2 √(3² + 4²) % of the simulated frequency; without that of the inputs it would be 6 %."""
+    head = Head("park-cantilever", "rig", "measured, in rig.csv", "measured", 1e-3)
+    cell = measured(head, 10.0, 0, reference(), Datum(EDGEWISE, data=0.03, inputs=0.04))
+    assert cell.uncertainty == pytest.approx(0.10, rel=1e-4)
+    assert "u_input 4.00 %, u_D 3.00 %" in cell.reason
+
+
 @given(st.floats(0.5, 2.0), st.floats(1e-6, 1.0), st.floats(0.0, 1.0), st.floats(0.0, 1.0))
 def test_more_uncertain_data_never_make_an_error_visible(ratio: float, u: float, more: float, inputs: float) -> None:
     """Nor do more uncertain inputs; and whatever is measured, the verdict is the same and is no miss."""
