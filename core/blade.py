@@ -18,7 +18,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from .blade_checks import ROOT_TOLERANCE, check
+from .blade_checks import ROOT_TOLERANCE, check_blade
 from .blade_checks import BladeError as BladeError
 from .space.inertia import about_centre
 from .space.spatial import skew
@@ -84,7 +84,7 @@ class Blade:
         set_(self, "kinks", _on_stations(self))
         if self.curve.size == 0:
             set_(self, "curve", np.outer(self.stations, [1.0, 0.0, 0.0]))
-        check(self)
+        check_blade(self)
 
     @property
     def length(self) -> float:
@@ -177,12 +177,12 @@ def clamped(blade: Blade) -> bool:
 
 def uniform(blade: Blade) -> bool:
     """Whether all sections are equal and uncoupled, and the blade straight, clamped, without twist, cone, pitch, tip mass."""
-    same = all(
+    equal_sections = all(
         np.allclose(v, v[0], rtol=1e-12, atol=0)
         for v in (np.diagonal(blade.mass, axis1=1, axis2=2), np.diagonal(blade.stiffness, axis1=1, axis2=2))
     )
     return (
-        same
+        equal_sections
         and clamped(blade)
         and not coupled(blade)
         and straight(blade)

@@ -63,7 +63,7 @@ class BladeError(ValueError):
     """An invalid blade: the message names the field, the value, the likely cause and the remedy."""
 
 
-def check(blade: "Blade") -> None:
+def check_blade(blade: "Blade") -> None:
     """Validate a blade.
 
     Raises:
@@ -122,12 +122,16 @@ def _stations(blade: "Blade") -> None:
 
 
 def _kinks(blade: "Blade") -> None:
-    inner = blade.stations[1:-1]
+    inner_stations = blade.stations[1:-1]
     for kink in blade.kinks:
-        if kink not in inner:
-            near = f"; the nearest is {inner[np.abs(inner - kink).argmin()]:g} m" if len(inner) else ""
+        if kink not in inner_stations:
+            nearest = (
+                f"; the nearest is {inner_stations[np.abs(inner_stations - kink).argmin()]:g} m"
+                if len(inner_stations)
+                else ""
+            )
             raise BladeError(
-                f"kinks: {kink:g} m: not a station between root and tip{near}: a kink must be at a station; "
+                f"kinks: {kink:g} m: not a station between root and tip{nearest}: a kink must be at a station; "
                 "add one there, or correct the kink"
             )
     if (np.diff(blade.kinks) <= 0).any():
@@ -158,7 +162,7 @@ def _curve(blade: "Blade") -> None:
     arc = lengths(s, r, blade.kinks)
     if (np.abs(arc - step) > allowed).any():
         raise BladeError(_unresolved(blade, int(np.argmax(np.abs(arc - step) / allowed)), arc, chord, allowed))
-    ends = np.concatenate([curve.at(s, r, blade.kinks, s, before=side)[1] for side in (False, True)])
+    ends = np.concatenate([curve.at(s, r, blade.kinks, s, root_side=side)[1] for side in (False, True)])
     if (ends[:, 0] < MIN_TANGENT_X * np.linalg.norm(ends, axis=1)).any():
         k = int(np.argmin(ends[:, 0])) % len(s)
         raise BladeError(
@@ -174,7 +178,7 @@ def lengths(s: Array, r: Array, kinks: tuple[float, ...] = ()) -> Array:
 
 
 def follows(s: Array, r: Array) -> bool:
-    """Whether the spline through points ``r`` (n, 3), m, has the arc lengths ``s`` (n,), m, as ``check`` requires."""
+    """Whether the spline through points ``r`` (n, 3), m, has the arc lengths ``s`` (n,), m, as ``check_blade`` requires."""
     return bool((np.abs(lengths(s, r) - np.diff(s)) <= ARC_TOLERANCE * np.diff(s) + COORDINATE_ROUNDING * s[-1]).all())
 
 
@@ -233,10 +237,10 @@ def _stiffness(blade: "Blade") -> None:
     wrong = np.abs(unit - np.swapaxes(unit, 1, 2))
     if wrong.max() > SYMMETRY_TOLERANCE:
         k, i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
-        above, below = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
+        upper, lower = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
         raise BladeError(
-            f"stiffness: entries ({i}, {j}) and ({j}, {i}) at station {k} ({blade.stations[k]:g} m) are {above:g} and "
-            f"{below:g}: it must be symmetric; supply both triangles with equal entries"
+            f"stiffness: entries ({i}, {j}) and ({j}, {i}) at station {k} ({blade.stations[k]:g} m) are {upper:g} and "
+            f"{lower:g}: it must be symmetric; supply both triangles with equal entries"
         )
     least = np.linalg.eigvalsh(unit)[:, 0]
     if least.min() <= 0:

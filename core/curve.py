@@ -16,7 +16,7 @@ SAME = 1e-12
 """Fraction of the length: arc lengths closer than this to a kink count as the kink."""
 
 
-def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool = False) -> tuple[Array, Array]:
+def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, root_side: bool = False) -> tuple[Array, Array]:
     """Values (k, …) and their derivatives with respect to arc length (k, …) at arc lengths ``s`` (k,), m.
 
     Args:
@@ -24,16 +24,16 @@ def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, before: bool =
         values: (n, …) at the stations: the curve (n, 3), m, or any quantity that is smooth between kinks.
         kinks: stations where the derivative jumps, ascending, m.
         s: (k,) arc lengths, m.
-        before: evaluate at a kink from its root side instead of its tip side.
+        root_side: evaluate at a kink from its root side instead of its tip side.
     """
     s = on_kinks(s, kinks, SAME * stations[-1])
-    piece = np.searchsorted(np.array(kinks), s, side="left" if before else "right")
+    piece = np.searchsorted(np.array(kinks), s, side="left" if root_side else "right")
     ends = np.array([stations[0], *kinks, stations[-1]])
     out, rate = (np.empty((len(s), *values.shape[1:]), dtype=values.dtype) for _ in range(2))
     for k in np.unique(piece):
-        points, here = (stations >= ends[k]) & (stations <= ends[k + 1]), piece == k
+        points, in_piece = (stations >= ends[k]) & (stations <= ends[k + 1]), piece == k
         spline = CubicSpline(stations[points], values[points])
-        out[here], rate[here] = spline(s[here]), spline(s[here], 1)
+        out[in_piece], rate[in_piece] = spline(s[in_piece]), spline(s[in_piece], 1)
     return out, rate
 
 

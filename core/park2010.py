@@ -34,10 +34,10 @@ _ROUNDED = 1e-8  # relative size of a residual that rounding explains
 def tree_joints(t: Tree, J: Array) -> Array:
     """Φᴶ_Z (…, 6 b) at a real state: the relative motions of neighbouring bodies that the joints of the tree forbid."""
     rows = []
-    for near, far, own, _, _ in t.branches:
+    for inboard, outboard, own, _, _ in t.branches:
         forbidden = np.zeros((6 - len(own), len(t.inertia) + 1, 6))  # the ground last
-        forbidden[:, far] = scipy.linalg.null_space(J.real[:, own].T).T if own else np.eye(6)
-        forbidden[:, near] = -forbidden[:, far]
+        forbidden[:, outboard] = scipy.linalg.null_space(J.real[:, own].T).T if own else np.eye(6)
+        forbidden[:, inboard] = -forbidden[:, outboard]
         rows.append(forbidden[:, :-1].reshape(len(forbidden), 6 * len(t.inertia)))
     return np.concatenate(rows)
 
@@ -53,10 +53,10 @@ def cut_joints(t: Tree) -> Array:
 def motions(t: Tree, J: Array, which: list[int]) -> Array:
     """Φᴹ_Z (..., m, 6 b): the rates of the coordinates ``which`` from the velocities of the bodies that they join."""
     rows = np.zeros((*J.shape[:-2], len(which), len(t.inertia) + 1, 6), complex)
-    for near, far, own, _, _ in t.branches:
+    for inboard, outboard, own, _, _ in t.branches:
         for k in set(own) & set(which):
-            rows[..., which.index(k), far, :] = cs.left_inverse(J[..., own])[..., own.index(k), :]
-            rows[..., which.index(k), near, :] = -rows[..., which.index(k), far, :]
+            rows[..., which.index(k), outboard, :] = cs.left_inverse(J[..., own])[..., own.index(k), :]
+            rows[..., which.index(k), inboard, :] = -rows[..., which.index(k), outboard, :]
     return rows[..., :-1, :].reshape(*rows.shape[:-2], 6 * len(t.inertia))
 
 
@@ -99,8 +99,8 @@ def partition(t: Tree, q: Array, independent: Sequence[str] | None = None) -> Pa
     Phi_q = constraints(t, J, transformation(t, J)).real
     rows = _pivots(Phi_q.T)
     spinning = [m.coordinate for m in t.mechanism.motions if not m.prescribed]
-    given = [t.coordinates.index(name) for name in (spinning if independent is None else independent)]
-    able = np.setdiff1d(np.arange(len(q)), given)
+    chosen = [t.coordinates.index(name) for name in (spinning if independent is None else independent)]
+    able = np.setdiff1d(np.arange(len(q)), chosen)
     D = able[_pivots(Phi_q[rows][:, able])].tolist()  # q = [q_I; q_D] (eq. 12)
     if len(D) < len(rows) or (independent is not None and len(D) < len(able)):
         raise MechanismError(
@@ -164,14 +164,14 @@ def equations(t: Tree, q: Array, v_I: Array, part: Partition) -> Equations:
     X, J = poses(t, q)
     B = transformation(t, J)
     Phi_q = constraints(t, J, B)
-    (I, D, rows), (prescribed, given) = part, t.motions()
+    (I, D, rows), (prescribed, imposed) = part, t.motions()
     lead, cuts = np.broadcast_shapes(q.shape[:-1], v_I.shape[:-1]), Phi_q.shape[-2] - len(prescribed)
 
     Phi_qI, Phi_qD = Phi_q[..., rows, :][..., I], Phi_q[..., rows, :][..., D]
     R = np.zeros((*q.shape, len(I)), complex)
     R[..., I, :] = np.eye(len(I))  # δΦ = Φ_qD δq_D + Φ_qI δq_I = 0 (eq. 13), so δq_D = −Φ_qD⁻¹ Φ_qI δq_I (eq. 14)
     R[..., D, :] = -np.linalg.solve(Phi_qD, Phi_qI)  # δq = R δq_I (eq. 15), R = [1; −Φ_qD⁻¹ Φ_qI] (eq. 16)
-    Phi_t = np.append(np.zeros(cuts), -given[:, 0])[rows]
+    Phi_t = np.append(np.zeros(cuts), -imposed[:, 0])[rows]
     v = np.zeros((*lead, q.shape[-1]), complex)
     v[..., I] = v_I
     moving = cs.times(Phi_qI, v_I) + Phi_t  # Φ̇ = Φ_qD q̇_D + Φ_qI q̇_I + Φ_t = 0 (eq. 17)
@@ -184,7 +184,7 @@ def equations(t: Tree, q: Array, v_I: Array, part: Partition) -> Equations:
     Q = forces(t, X, Y, M) + cs.times(cs.transposed(motions(t, J, sprung)), f)
     Q_star = cs.times(cs.transposed(B), Q - by_bodies(M, B_dot_v))  # Q* = Bᵀ Q − Bᵀ M Ḃ v (eq. 11)
 
-    accelerated = np.broadcast_to(-given[:, 1], (*lead, len(prescribed)))
+    accelerated = np.broadcast_to(-imposed[:, 1], (*lead, len(prescribed)))
     gamma = np.append(cs.times(cut_joints(t), B_dot_v), accelerated, axis=-1)[..., rows]  # Φ̈ = Φ_q v̇ + γ = 0 (eq. 19)
     gamma_bar = np.zeros(v.shape, complex)
     gamma_bar[..., D] = -cs.solved(Phi_qD, gamma)  # q̈_D = −Φ_qD⁻¹ (Φ_qI q̈_I + γ) (eq. 20), γ̄ = [0; −Φ_qD⁻¹ γ] (eq. 22)

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple, get_args
 import numpy as np
 
 from .element.measures import Measure, StrainLaw, joined, response
-from .mechanism.description import GROUND, Mechanism, MechanismError, check
+from .mechanism.description import GROUND, Mechanism, MechanismError, check_mechanism
 from .mechanism.joints import SCREWS, Joint, coordinate_names
 from .space import complex_step as cs
 from .space import spatial as sp
@@ -20,10 +20,10 @@ Array = np.ndarray[Any, Any]
 
 
 class Branch(NamedTuple):
-    """A joint of the tree, from body ``near`` (−1: the ground) to body ``far``, with its coordinates and frames."""
+    """A joint of the tree, from body ``inboard`` (−1: the ground) to body ``outboard``, with its coordinates and frames."""
 
-    near: int
-    far: int
+    inboard: int
+    outboard: int
     own: list[int]
     at_near: Array
     from_far: Array
@@ -72,9 +72,9 @@ class Tree:
 
     def motions(self) -> tuple[list[int], Array]:
         """Prescribed coordinates (m), and their rates and accelerations (m, 2)."""
-        given = [m for m in self.mechanism.motions if m.prescribed]
-        rates = np.array([(m.rate, m.acceleration) for m in given]).reshape(-1, 2)
-        return [self.coordinates.index(m.coordinate) for m in given], rates
+        prescribed = [m for m in self.mechanism.motions if m.prescribed]
+        rates = np.array([(m.rate, m.acceleration) for m in prescribed]).reshape(-1, 2)
+        return [self.coordinates.index(m.coordinate) for m in prescribed], rates
 
 
 def tree(mechanism: Mechanism) -> Tree:
@@ -83,19 +83,19 @@ def tree(mechanism: Mechanism) -> Tree:
     Raises:
         MechanismError: an invalid mechanism, a body that no joint reaches, an element with mass.
     """
-    check(mechanism)
+    check_mechanism(mechanism)
     b = len(mechanism.bodies)
     bodies = {GROUND: -1, **{body.name: k for k, body in enumerate(mechanism.bodies)}}
     branches, coordinates, screw = [], [], []
 
-    def hang(joint: Joint, forward: bool, far: int) -> None:
+    def hang(joint: Joint, forward: bool, outboard: int) -> None:
         way = 1 if forward else -1
-        near, at_near, at_far = (
+        inboard, at_near, at_far = (
             bodies[(joint.parent, joint.child)[1 - forward]],
             *(joint.at_parent, joint.at_child)[::way],
         )
         own = [len(coordinates) + k for k in range(len(SCREWS[joint.kind]))]
-        branches.append(Branch(near, far, own, at_near, sp.inverse(at_far)))
+        branches.append(Branch(inboard, outboard, own, at_near, sp.inverse(at_far)))
         coordinates.extend(coordinate_names(joint)[::way])
         screw.extend(way * s for _, s in SCREWS[joint.kind][::way])
 
@@ -120,11 +120,11 @@ def tree(mechanism: Mechanism) -> Tree:
         np.zeros((b + len(cuts) + 1, len(screw))),
         np.zeros((len(screw), len(screw))),
     )  # the ground last
-    for near, far, own, _, _ in branches:
-        moves_body[far] = moves_body[near]
+    for inboard, outboard, own, _, _ in branches:
+        moves_body[outboard] = moves_body[inboard]
         for k in own:
-            moves_screw[k] = moves_body[far]
-            moves_body[far, k] = 1.0
+            moves_screw[k] = moves_body[outboard]
+            moves_body[outboard, k] = 1.0
     return Tree(
         mechanism=mechanism,
         bodies=bodies,
@@ -144,7 +144,7 @@ def _elements(mechanism: Mechanism, bodies: dict[str, int], measure: Measure) ->
     if not some:
         return None
     for x in some:
-        if x.beams.inner:
+        if x.beams.internal_count:
             raise MechanismError(f"beam {x.body_a!r}–{x.body_b!r}: it has mass inside: lump the mass at its ends")
     return Elements(
         law=joined([x.beams.law for x in some]),
@@ -163,12 +163,12 @@ def poses(t: Tree, q: Array) -> tuple[Array, Array]:
     steps = cs.exp(t.screw, q)
     X, frames = np.zeros((*q.shape[:-1], len(t.inertia) + 1, 4, 4), complex), np.zeros(steps.shape, complex)
     X[..., -1, :, :] = np.eye(4)
-    for near, far, own, at_near, from_far in t.branches:
-        x = X[..., near, :, :] @ at_near
+    for inboard, outboard, own, at_near, from_far in t.branches:
+        x = X[..., inboard, :, :] @ at_near
         for k in own:
             frames[..., k, :, :] = x
             x = x @ steps[..., k, :, :]
-        X[..., far, :, :] = x @ from_far
+        X[..., outboard, :, :] = x @ from_far
     return X, np.ascontiguousarray(cs.transposed(cs.times(cs.adjoint(frames), t.screw)))
 
 

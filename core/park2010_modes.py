@@ -98,7 +98,7 @@ def linearize(t: Tree, q: Array, independent: Sequence[str] | None = None) -> Li
     return Linear(t, part, q, e, e.M_hat.real, -along_v(t, part, q), -along_q(t, part, q))
 
 
-def steady(t: Tree, guess: Mapping[str, float] | Array | None = None) -> Array:
+def steady_state(t: Tree, guess: Mapping[str, float] | Array | None = None) -> Array:
     """Coordinates (n,) of the steady state Q̂ = 0, by Newton's method from a guess (0 for coordinates without one).
 
     The tangent is kept as long as corrections shrink tenfold.

@@ -125,12 +125,12 @@ def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Comple
     turning = np.empty_like(velocity)
     for start, end in pairwise(ends):
         piece = (at >= start) & (at <= end)
-        here = (s >= start) & (s <= end)
+        in_piece = (s >= start) & (s <= end)
         section = np.where(
-            (at[piece] == start)[:, None, None], *(frames(blade, at[piece], before=b) for b in (False, True))
+            (at[piece] == start)[:, None, None], *(frames(blade, at[piece], root_side=b) for b in (False, True))
         )
-        velocity[:, here], turning[:, here] = _smooth_motion(
-            blade, at[piece], section[:, :3, :3], modes.shapes[:, piece], s[here], centre[here]
+        velocity[:, in_piece], turning[:, in_piece] = _smooth_motion(
+            blade, at[piece], section[:, :3, :3], modes.shapes[:, piece], s[in_piece], centre[in_piece]
         )
     return velocity, turning
 

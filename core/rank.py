@@ -29,28 +29,28 @@ class Ranked:
     U_e and U_x contain the units of the equations A x = b and of the unknowns x. In these units, norms are of like quantities.
 
     Attributes:
-        left: (m, r) left singular vectors, divided by the equations' units.
-        sizes: (r,) singular values that are not zero.
-        right: (r, n) right singular vectors, times the unknowns' units.
+        left_vectors: (m, r) left singular vectors, divided by the equations' units.
+        singular_values: (r,) singular values that are not zero.
+        right_vectors: (r, n) right singular vectors, times the unknowns' units.
         null: (n, n − r) basis of the null space, orthonormal in these units.
         left_null: (m, m − r) basis of the null space of the transpose, likewise.
     """
 
-    left: Array
-    sizes: Array
-    right: Array
+    left_vectors: Array
+    singular_values: Array
+    right_vectors: Array
     null: Array
     left_null: Array
 
     @property
     def rank(self) -> int:
         """The number of singular values that are not zero."""
-        return len(self.sizes)
+        return len(self.singular_values)
 
     def solve(self, b: Array, damping: float = 0.0) -> Array:
         """The x (n,) or (n, k) of least norm that minimises |A x − b|, or |A x − b|² + damping |x|²; norms in the units."""
-        scaled = (self.left.T @ b).T * self.sizes / (self.sizes**2 + damping)
-        return self.right.T @ scaled.T
+        scaled = (self.left_vectors.T @ b).T * self.singular_values / (self.singular_values**2 + damping)
+        return self.right_vectors.T @ scaled.T
 
 
 def ranked(
@@ -83,8 +83,8 @@ def ranked(
     if error is not None:
         keep |= s > np.maximum((np.abs(u.T) @ error) * (np.abs(vt) @ error), n * np.finfo(float).eps * s[0])
     u, v = u / row, vt.T * column
-    left, right = keep[:m], keep[:n]
-    return Ranked(u[:, left], s[keep[: len(s)]], v[:, right].T, v[:, ~right], u[:, ~left])
+    of_u, of_v = keep[:m], keep[:n]
+    return Ranked(u[:, of_u], s[keep[: len(s)]], v[:, of_v].T, v[:, ~of_v], u[:, ~of_u])
 
 
 def check_finite(A: Array) -> None:

@@ -18,7 +18,7 @@ from .element.sections import root
 from .space import spatial as sp
 from .spectrum.mesh_solver import Options, free_root
 from .spectrum.refinement import MAX_ELEMENTS, Key, Meshes
-from .steady.blade_state import LargeStrainError, Steady, SteadyStateError, carried_over, largest_strain, steady
+from .steady.blade_state import LargeStrainError, Steady, SteadyStateError, carried_over, largest_strain, steady_state
 from .threads import one_thread
 from .tree.links import Links, gathered
 from .tree.pencil import has_free_motion, linearize, undeformed
@@ -95,18 +95,18 @@ def root_loads(
 def _refined(
     blade: Blade, omega: float, accuracy: float, gravity: Array, load: Array | None, allow_large_strain: bool
 ) -> RootLoads:
-    meshes = Meshes(blade, Options(1, gravity=gravity), load=load, fastest=abs(omega))
-    at, previous, level = root(blade), None, -1
+    meshes = Meshes(blade, Options(1, gravity=gravity), load=load, grading_speed=abs(omega))
+    at, previous, halvings = root(blade), None, -1
     while True:
-        level += 1
-        mesh = meshes.mesh(Key(level=level))
-        near = carried_over(previous[0], previous[1].shape, mesh) if previous else None
+        halvings += 1
+        mesh = meshes.mesh(Key(halvings=halvings))
+        initial_shape = carried_over(previous[0], previous[1].shape, mesh) if previous else None
         try:
-            state = steady(mesh, omega, gravity, near)
+            state = steady_state(mesh, omega, gravity, initial_shape)
         except SteadyStateError as error:
             if has_free_motion(linearize(mesh, undeformed(mesh), omega, gravity)):
                 raise free_root(omega) from error
-            if previous or level >= _COARSE_FAILURES:
+            if previous or halvings >= _COARSE_FAILURES:
                 raise
             continue
         wrench = on_hub(mesh, state, omega, gravity, at[:3, 3])

@@ -1,8 +1,9 @@
 """A blade's natural frequencies and mode shapes: the public interface of the solver."""
 
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from typing import Concatenate, ParamSpec
 
 import numpy as np
 from numpy.typing import NDArray
@@ -23,10 +24,12 @@ Array = NDArray[np.float64]
 
 NO_GRAVITY = np.zeros(3)
 
+P = ParamSpec("P")
 
-def modes(
+
+def sweep(
     blade: Blade,
-    omega: float,
+    omegas: Iterable[float],
     elements: int | None = None,
     count: int = 10,
     *,
@@ -37,12 +40,15 @@ def modes(
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
     allow_large_strain: bool = False,
-) -> Modes:
-    """The lowest modes of a blade in steady rotation at ``omega``, with their relative uncertainties.
+) -> Iterator[Modes]:
+    """Yield the lowest modes of a blade in steady rotation at one speed after another, with their relative uncertainties.
+
+    Meshes are kept until |omega| exceeds the power of two for which they were graded. Newton's method starts from an
+    extrapolation of the previous steady states.
 
     Args:
         blade: the blade.
-        omega: rotor speed, rad/s.
+        omegas: rotor speeds, rad/s.
         elements: number of beam elements, of equal length. By default a mesh graded towards the root is refined until
             ``accuracy`` is met, and the frequencies are extrapolated (Richardson).
         count: number of modes (fewer if the discretisation has fewer).
@@ -62,41 +68,6 @@ def modes(
         UnstableError: the steady state is not stable.
         EigensolverError, MissedModesError: the eigensolver failed.
     """
-    results = sweep(
-        blade,
-        [omega],
-        elements,
-        count,
-        accuracy=accuracy,
-        mass=mass,
-        stiffness=stiffness,
-        effects=effects,
-        gravity=gravity,
-        load=load,
-        allow_large_strain=allow_large_strain,
-    )
-    return next(results)
-
-
-def sweep(
-    blade: Blade,
-    omegas: Iterable[float],
-    elements: int | None = None,
-    count: int = 10,
-    *,
-    accuracy: float = 1e-6,
-    mass: Mass = "consistent",
-    stiffness: Measure = "corotational",
-    effects: Effects = ALL_EFFECTS,
-    gravity: Array = NO_GRAVITY,
-    load: Array | None = None,
-    allow_large_strain: bool = False,
-) -> Iterator[Modes]:
-    """The modes at one speed after another; arguments and errors as for ``modes``.
-
-    Meshes are kept until |omega| exceeds the power of two for which they were graded. Newton's method starts from an
-    extrapolation of the previous steady states.
-    """
     if not accuracy > 0:
         raise ValueError(f"accuracy: {accuracy}: give a positive relative number, such as 1e-6")
     body = blade if effects.rotary_inertia else without_rotary_inertia(blade)
@@ -104,8 +75,8 @@ def sweep(
     starts: Starts = {}
     for omega in _checked(omegas, count):
         begun = time.perf_counter()
-        if abs(omega) > meshes.fastest:  # the graded mesh is made for a range of speeds, up to a power of two
-            meshes, starts = replace(meshes, fastest=2.0 ** np.ceil(np.log2(abs(omega)))), {}
+        if abs(omega) > meshes.grading_speed:  # the graded mesh is made for a range of speeds, up to a power of two
+            meshes, starts = replace(meshes, grading_speed=2.0 ** np.ceil(np.log2(abs(omega)))), {}
         with one_thread():
             result, starts = (
                 refined(meshes, omega, accuracy, starts)
@@ -120,9 +91,9 @@ def sweep(
         yield replace(result, seconds=time.perf_counter() - begun)
 
 
-def mesh_modes(
+def mesh_sweep(
     blade: Blade,
-    omega: float,
+    omegas: Iterable[float],
     elements: int,
     count: int = 10,
     *,
@@ -131,23 +102,8 @@ def mesh_modes(
     effects: Effects = ALL_EFFECTS,
     gravity: Array = NO_GRAVITY,
     load: Array | None = None,
-) -> Modes:
-    """The modes of one mesh, without uncertainties and at any strain, for refinement; otherwise as ``modes``."""
-    return next(mesh_sweep(blade, [omega], elements, count, mass, stiffness, effects, gravity, load))
-
-
-def mesh_sweep(
-    blade: Blade,
-    omegas: Iterable[float],
-    elements: int,
-    count: int = 10,
-    mass: Mass = "consistent",
-    stiffness: Measure = "corotational",
-    effects: Effects = ALL_EFFECTS,
-    gravity: Array = NO_GRAVITY,
-    load: Array | None = None,
 ) -> Iterator[Modes]:
-    """The modes of one mesh at one speed after another; see ``mesh_modes``."""
+    """Yield the modes of one mesh, without uncertainties and at any strain, for refinement; otherwise as ``sweep``."""
     speeds = _checked(omegas, count)
     body = discretize(
         blade if effects.rotary_inertia else without_rotary_inertia(blade), elements, mass, stiffness, load
@@ -174,10 +130,28 @@ def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
         yield float(omega)
 
 
+def _at_one_speed(
+    swept: Callable[Concatenate[Blade, Iterable[float], P], Iterator[Modes]],
+) -> Callable[Concatenate[Blade, float, P], Modes]:
+    """The function of a blade and one speed (rad/s) with the other arguments of ``swept``."""
+
+    def modes(blade: Blade, omega: float, /, *args: P.args, **kwargs: P.kwargs) -> Modes:
+        return next(swept(blade, [omega], *args, **kwargs))
+
+    return modes
+
+
+modes = _at_one_speed(sweep)
+"""The modes at one speed; arguments and errors as for ``sweep``."""
+
+mesh_modes = _at_one_speed(mesh_sweep)
+"""The modes of one mesh at one speed; arguments as for ``mesh_sweep``."""
+
+
 def chain_modes(
     body: Mesh, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = NO_GRAVITY
 ) -> Modes:
-    """The lowest modes of a mesh, with ``rounding`` as the only error estimate; arguments and errors as for ``modes``."""
+    """The lowest modes of a mesh, with ``rounding`` as the only error estimate; arguments and errors as for ``sweep``."""
     options = Options(count, effects, gravity)
     solved = mesh_solver.solve(body, next(_checked([omega], count)), options)
     return replace(solved.modes, rounding=mesh_solver.rounding(body, solved, options))

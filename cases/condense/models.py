@@ -92,7 +92,9 @@ def _load(folder: Path, spec: str | Matrix, what: str) -> Exported:
     files.inside(path)
     try:
         return (
-            matrix_files.stored(path) if os.path.isfile(path.with_suffix(".dof")) else matrix_files.read(path, chosen)
+            matrix_files.stored(path)
+            if os.path.isfile(path.with_suffix(".dof"))
+            else matrix_files.read_matrix(path, chosen)
         )
     except FileNotFoundError:
         raise CaseError(

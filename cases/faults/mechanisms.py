@@ -144,7 +144,7 @@ FAULTS = (
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
           ((mechanism, "answers", _given(_without_motion)),), ASKED),
     Fault("rotor: frozen azimuth", "solver", "a rotor on a support is linearised at one azimuth", "31 %",
-          ((multibody, "turning", _frozen), (periodic, "check", _unchecked)), WHIRLING),
+          ((multibody, "turning", _frozen), (periodic, "check_constant", _unchecked)), WHIRLING),
     Fault("rotor: transformation", "solver", "multi-blade coordinates lack their gyroscopic term", "factors",
           ((multiblade, "second_order", _not_gyroscopic),), WHIRLING),
     Fault("rotor: blades backwards", "adapter", "blades are numbered against the rotation", "no answer",

@@ -12,7 +12,7 @@ from ...core.element.measures import Measure
 from ...core.mechanism.description import MechanismError
 from ...core.modes import STATIONS, Modes
 from ...core.park2010_input import tree
-from ...core.park2010_modes import Linear, linearize, modes, steady
+from ...core.park2010_modes import Linear, linearize, modes, steady_state
 from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
 from ...core.tree import as_mechanism
@@ -74,4 +74,4 @@ def _linear(mechanism: bytes) -> Linear:
         MechanismError: no convergence.
     """
     t = tree(pickle.loads(mechanism))
-    return linearize(t, steady(t))
+    return linearize(t, steady_state(t))

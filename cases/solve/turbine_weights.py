@@ -44,7 +44,7 @@ def of_core(turbine: Turbine) -> Fingerprint:
     """The turbine that core assembles: its tower's mesh, which carries nacelle and rotor, and its rotor at rest."""
     made = machine(turbine)
     state = balance(made.blade_mesh, 0.0, np.zeros(3), ALL_EFFECTS)
-    blade = component.reduced(made.blade_mesh, state, made.resolution.blade_modes)
+    blade = component.reduced_component(made.blade_mesh, state, made.resolution.blade_modes)
     rotor = assembly.rotor(made.turbine, blade, 0.0, 0.0)[0]
     return of_turbine(_body(made.tower_mesh), float(rotor[-1, -1]), made.resolution.blade_elements)
 

@@ -13,13 +13,12 @@ from dataclasses import replace
 import numpy as np
 from numpy.typing import NDArray
 
-from .. import solve
-from ..effects import ALL_EFFECTS, Effects
 from ..element import beams as bm
 from ..element.beams import Beams, Points
 from ..element.measures import LARGEST_STRAIN, constant_strain
 from ..element.mesh import Mesh
 from ..modes import STATIONS, Modes
+from ..solve import chain_modes
 from ..space import spatial as sp
 from ..space.inertia import about_centre, transformed
 from ..spectrum import accuracy
@@ -60,24 +59,12 @@ def mesh_from_segments(segments: Sequence[Segment], root: Array) -> Mesh:
                 undeformed, np.arange(n), centres, np.array([s.body_twist for s in segments]), none, bodies
             ),
             preload=np.zeros((n, 6)),
-            inner_preload=np.zeros((n, 6)),
+            internal_preload=np.zeros((n, 6)),
         ),
         samples=_samples(undeformed),
         scale=float(np.linalg.norm(undeformed[:, :3, 3], axis=1).sum()),
         force=np.zeros((n + 1, 3)),
     )
-
-
-def chain_modes(
-    mesh: Mesh, omega: float, count: int = 10, *, effects: Effects = ALL_EFFECTS, gravity: Array = solve.NO_GRAVITY
-) -> Modes:
-    """The lowest modes of a chain turning steadily at ``omega`` (rad/s); see ``solve.modes``.
-
-    Raises:
-        SteadyStateError: no steady state at this speed.
-        UnstableError: the steady state is not stable.
-    """
-    return solve.chain_modes(mesh, omega, count, effects=effects, gravity=gravity)
 
 
 def segment_modes(

@@ -79,7 +79,7 @@ def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
     if not np.isfinite(X).all():
         raise CondensationError(
             f"{fe_model.name}: unsupported freedoms among its {n} once the sections' frames are fixed: "
-            "nodes without elements, loose parts, or rotations without stiffness? drop them from the model"
+            "remove nodes without elements, loose parts and rotations without stiffness from the model"
         )
     displacements = follow.copy()
     displacements[free] += unit[:, None] * X[: len(free)]
@@ -155,7 +155,7 @@ def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Arr
         if wrong > MAX_ASYMMETRY or np.linalg.eigvalsh(unit + unit.T)[0] <= 0:
             raise CondensationError(
                 f"segment {a.name!r} to {b.name!r}: its flexibility is not symmetric (by {wrong:.1e}), or not positive: "
-                "sections too close together for the mesh, or ties of another model?"
+                "check that its sections are apart by at least one element, and that the ties are of this model"
             )
         J, mean = _body(fe_model, masses[k], a.frame, displacements)
         stiffness: Array = np.linalg.inv(0.5 * (flexibility + flexibility.T))

@@ -94,7 +94,7 @@ def assembled(name: str, rows: Index, columns: Index, values: Array, mirror: boo
     if (times > 1).any():
         k = int(np.argmax(code == entries[times.argmax()]))
         raise MatrixFileError(
-            f"{name}: the entry of {rows[k].tolist()} and {columns[k].tolist()} is given twice: two matrices in one file?"
+            f"{name}: the entry of {rows[k].tolist()} and {columns[k].tolist()} is given twice: give one matrix per file"
         )
     alone = ~np.isin(mirrored, code)
     if mirror or (mirror is None and (alone | (i == j)).all()):

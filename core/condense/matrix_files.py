@@ -32,7 +32,7 @@ REAL = (1, 2)
 SQUARE, SYMMETRIC = 1, 6
 
 
-def read(path: Path, what: str = "stiffness") -> Exported:
+def read_matrix(path: Path, what: str = "stiffness") -> Exported:
     """Read one matrix.
 
     Args:
@@ -47,10 +47,10 @@ def read(path: Path, what: str = "stiffness") -> Exported:
     text = read_bytes(path, LARGEST_DATA).decode("utf-8-sig", errors="replace")
     if "\0" in text:
         raise MatrixFileError(
-            f"{path.name}: not a text file: a binary export, or UTF-16? export or save it as text in UTF-8"
+            f"{path.name}: not a text file in UTF-8: export the matrix as text, or convert a file in UTF-16"
         )
     if text.startswith("%%MatrixMarket"):
-        return matrix_market.read(path.name, text)
+        return matrix_market.read_matrix_market(path.name, text)
     lines = text.upper().splitlines()
     if any(line.startswith("*USER ELEMENT") for line in lines):
         return _user_element(path.name, lines, what.upper())
@@ -63,17 +63,19 @@ def stored(path: Path) -> Exported:
     """A matrix stored by CalculiX, with the freedoms from the ``.dof`` file in the same folder.
 
     Raises:
-        MatrixFileError: as ``read``, or if the numbers of freedoms and rows differ.
+        MatrixFileError: as ``read_matrix``, or if the numbers of freedoms and rows differ.
         OSError: if either file is missing.
     """
-    matrix: Any = read(path).matrix
+    matrix: Any = read_matrix(path).matrix
     dof = path.with_suffix(".dof")
     words = [w.split(".") for w in read_bytes(dof, LARGEST_DATA).decode(errors="replace").split()]
     rows = matrix.shape[0]
     if len(words) != rows:
-        raise MatrixFileError(f"{path.name}: {rows} rows, but {len(words)} freedoms in its .dof: from another run?")
+        raise MatrixFileError(
+            f"{path.name}: {rows} rows, but {len(words)} freedoms in its .dof: use both files of one run"
+        )
     if any(len(w) != 2 for w in words):
-        raise MatrixFileError(f"{dof.name}: expected node.component on each line: from another program?")
+        raise MatrixFileError(f"{dof.name}: expected node.component on each line, as CalculiX writes it")
     freedoms = np.array([[whole(dof.name, k, v) for v in w] for k, w in enumerate(words, 1)])
     return labelled(path.name, matrix, freedoms)
 
@@ -96,10 +98,10 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
             if kind:
                 triangles[card] = []
         elif card == "nodes":
-            given = [whole(name, number, w) for w in words]
-            if not given:
+            numbers = [whole(name, number, w) for w in words]
+            if not numbers:
                 continue
-            active[given[0] if active else 1] = given[1:] if active else given
+            active[numbers[0] if active else 1] = numbers[1:] if active else numbers
         elif card:
             triangles[card] += reals(name, [number] * len(words), words).tolist()
     key = _chosen(name, "*MATRIX, TYPE", list(triangles), what)
@@ -111,7 +113,8 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
     n, values = len(freedoms), triangles[key]
     if len(values) != n * (n + 1) // 2:
         raise MatrixFileError(
-            f"{name}: {len(values)} values, expected {n * (n + 1) // 2} for the triangle of {n} freedoms: truncated?"
+            f"{name}: {len(values)} values, expected {n * (n + 1) // 2} for the triangle of {n} freedoms: the file may be "
+            "truncated"
         )
     dense = np.zeros((n, n))
     dense[np.tril_indices(n)] = values
@@ -129,22 +132,22 @@ def _triplets(name: str, lines: list[str]) -> Exported:
         if len(words) != width or width not in (3, 5):
             raise MatrixFileError(
                 f"{name}, line {number}: {len(words)} columns, expected row, column, value, or node, freedom, node, "
-                "freedom, value: truncated, or another format?"
+                "freedom, value: the file may be truncated or in another format"
             )
         numbers.append(number)
         rows.append(words)
     if not rows:
-        raise MatrixFileError(f"{name}: no matrix found: is it in one of the formats listed in docs/condense.md?")
+        raise MatrixFileError(f"{name}: no matrix found: docs/condense.md lists the formats")
     *labels, entries = zip(*rows, strict=True)
     at = np.column_stack([wholes(name, numbers, column) for column in labels])
     values = reals(name, numbers, entries)
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], values)
-    ones = np.ones(len(at), np.intp)
-    by_number = assembled(name, np.column_stack([at[:, 0], ones]), np.column_stack([at[:, 1], ones]), values)
+    component = np.ones(len(at), np.intp)
+    by_number = assembled(name, np.column_stack([at[:, 0], component]), np.column_stack([at[:, 1], component]), values)
     if (by_number.nodes != 1 + np.arange(len(by_number.nodes))).any():
         raise MatrixFileError(
-            f"{name}: rows {by_number.nodes.tolist()[:3]}…: not all from 1 to the last: rows without entries?"
+            f"{name}: rows {by_number.nodes.tolist()[:3]}…: not all from 1 to the last: some rows have no entries"
         )
     return Exported(name, by_number.matrix)
 
@@ -166,7 +169,7 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
                 continue
             if matrix not in forms:
                 raise MatrixFileError(
-                    f"{name}, line {number}: column of {matrix} before its header: was the start cut off?"
+                    f"{name}, line {number}: column of {matrix} before its header: the start of the file may be missing"
                 )
             column = whole(name, number, words[1]), whole(name, number, words[2])
             words = words[4:] if width == 8 else []
@@ -190,7 +193,7 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
 
 def _chosen(name: str, kind: str, available: list[str], what: str) -> str:
     if not available:
-        raise MatrixFileError(f"{name}: no {kind} found: is the file truncated?")
+        raise MatrixFileError(f"{name}: no {kind} found: the file may be truncated")
     if what not in available and len(available) > 1:
         raise MatrixFileError(f"{name}: {kind} {what} not found; there are {', '.join(available)}")
     return what if what in available else available[0]

@@ -17,7 +17,7 @@ SIGN = {"general": 0.0, "symmetric": 1.0, "skew-symmetric": -1.0}
 """Sign of the mirrored entries; 0: the file contains all entries."""
 
 
-def read(name: str, text: str) -> Exported:
+def read_matrix_market(name: str, text: str) -> Exported:
     """The matrix (n, n) in the text of a file; the format does not name freedoms.
 
     Args:
@@ -37,7 +37,7 @@ def read(name: str, text: str) -> Exported:
     size = lines[numbers[0] - 1].split() if numbers else []
     sparse = words[2] == "coordinate"
     if len(size) != (3 if sparse else 2):
-        raise MatrixFileError(f"{name}: not a Matrix Market file: no line with its size: truncated?")
+        raise MatrixFileError(f"{name}: not a Matrix Market file: no line with its size: the file may be truncated")
     number, *numbers = numbers
     rows, columns, *_ = (whole(name, number, word) for word in size)
     if rows != columns:
@@ -52,10 +52,12 @@ def read(name: str, text: str) -> Exported:
 
 def _entries(name: str, numbers: list[int], lines: list[str], n: int, count: int, sign: float) -> Exported:
     if len(lines) != count:
-        raise MatrixFileError(f"{name}: {len(lines)} entries, expected {count}: truncated?")
+        raise MatrixFileError(f"{name}: {len(lines)} entries, expected {count}: the file may be truncated")
     for number, line in zip(numbers, lines, strict=True):
         if (columns := len(line.split())) != 3:
-            raise MatrixFileError(f"{name}, line {number}: {columns} columns, expected row, column, value: truncated?")
+            raise MatrixFileError(
+                f"{name}, line {number}: {columns} columns, expected row, column, value: the line may be truncated"
+            )
     words = " ".join(lines).split()
     i, j = wholes(name, numbers, words[0::3]) - 1, wholes(name, numbers, words[1::3]) - 1
     values = reals(name, numbers, words[2::3])
@@ -63,12 +65,12 @@ def _entries(name: str, numbers: list[int], lines: list[str], n: int, count: int
         entry = [int(i[k]) + 1, int(j[k]) + 1]
         raise MatrixFileError(f"{name}, line {numbers[k]}: entry {entry} of a matrix with {n} rows: correct it")
     if len(np.unique(i * n + j)) != count:
-        raise MatrixFileError(f"{name}: an entry is given twice: two matrices in one file?")
-    other = np.flatnonzero(i != j) if sign else np.zeros(0, dtype=np.intp)
+        raise MatrixFileError(f"{name}: an entry is given twice: give one matrix per file")
+    off_diagonal = np.flatnonzero(i != j) if sign else np.zeros(0, dtype=np.intp)
     if sign and len(np.unique(np.minimum(i, j) * n + np.maximum(i, j))) != count:
         raise MatrixFileError(f"{name}: both triangles, but its first line declares one: correct that line")
-    values = np.concatenate([values, sign * values[other]])
-    rows, columns = np.concatenate([i, j[other]]), np.concatenate([j, i[other]])
+    values = np.concatenate([values, sign * values[off_diagonal]])
+    rows, columns = np.concatenate([i, j[off_diagonal]]), np.concatenate([j, i[off_diagonal]])
     return Exported(name, ss.csr_array((values, (rows, columns)), shape=(n, n)))
 
 
@@ -76,7 +78,7 @@ def _whole(name: str, numbers: list[int], lines: list[str], n: int, sign: float)
     """A dense matrix column by column; of a symmetric one the lower triangle, of a skew-symmetric one without diagonal."""
     count = n * n if not sign else n * (n + 1) // 2 if sign > 0 else n * (n - 1) // 2
     if len(lines) != count:
-        raise MatrixFileError(f"{name}: {len(lines)} values, expected {count} for {n} rows: truncated?")
+        raise MatrixFileError(f"{name}: {len(lines)} values, expected {count} for {n} rows: the file may be truncated")
     for number, line in zip(numbers, lines, strict=True):
         if len(line.split()) != 1:
             raise MatrixFileError(f"{name}, line {number}: an array has one value per line: correct it")

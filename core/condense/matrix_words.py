@@ -31,9 +31,9 @@ def whole(name: str, number: int, word: str) -> int:
         MatrixFileError: naming the line.
     """
     if not re.fullmatch(r"[+-]?\d{1,20}", word):
-        raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a whole number: columns shifted?")
+        raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a whole number: columns may be shifted")
     if abs(value := int(word)) >= LARGEST_LABEL:
-        raise MatrixFileError(f"{name}, line {number}: {value}: too large for a node or row: columns shifted?")
+        raise MatrixFileError(f"{name}, line {number}: {value}: too large for a node or row: columns may be shifted")
     return value
 
 
@@ -44,7 +44,7 @@ def real(name: str, number: int, word: str) -> float:
         MatrixFileError: naming the line.
     """
     if not (form := _FORM.fullmatch(word)):
-        raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a number: columns shifted?")
+        raise MatrixFileError(f"{name}, line {number}: {word[:40]!r} is not a number: columns may be shifted")
     mantissa, exponent = form[1], (form[2] or "").lstrip("EeDd")
     value = float(f"{'-' if word.startswith('-') else ''}{mantissa}E{exponent or 0}")
     if abs(value) > LARGEST_ENTRY:

@@ -67,7 +67,7 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
         i = int(diagonal.argmin())
         raise CondensationError(
             f"{where}: diagonal {i} is {diagonal[i]:g}: not positive semi-definite, or no stiffness against "
-            f"{MOTIONS[i % 6]} of frame {'ab'[i // 6]}; wrong sign, order of freedoms, or a freedom without stiffness?"
+            f"{MOTIONS[i % 6]} of frame {'ab'[i // 6]}; check the sign and order of freedoms, and that each has a stiffness"
         )
     unit = k / np.sqrt(np.outer(diagonal, diagonal))
     wrong = np.abs(unit - unit.T).max()
@@ -80,7 +80,7 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
     if lowest < -SYMMETRY_TOLERANCE:
         raise CondensationError(
             f"{where}: not positive semi-definite (lowest eigenvalue {lowest:.2e} of a unit diagonal): "
-            "wrong sign, order of freedoms, or a stiffness under load?"
+            "check the sign and the order of freedoms, and export the stiffness without load"
         )
     motions = (
         np.concatenate([np.eye(6), sp.adjoint(sp.inverse(undeformed))]) * np.sqrt(diagonal)[:, None]

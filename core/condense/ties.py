@@ -57,24 +57,26 @@ class FiniteElements:
         n = len(self.directions)
         shapes = {"points": (n, 3), "stiffness": (n, n), "mass": (n,)}
         for field, shape in shapes.items():
-            given = getattr(self, field).shape
-            if given != shape:
+            actual = getattr(self, field).shape
+            if actual != shape:
                 raise CondensationError(
-                    f"{self.name}: {field} has shape {given}, expected {shape} for {n} freedoms: is it from another model?"
+                    f"{self.name}: {field} has shape {actual}, expected {shape} for {n} freedoms: give arrays of one model"
                 )
         if not (np.abs(self.points) <= FARTHEST).all():
             raise CondensationError(
-                f"{self.name}: a point at {np.abs(self.points).max():g} m: a gap in the exported mesh, or wrong units?"
+                f"{self.name}: a point at {np.abs(self.points).max():g} m: check the coordinates and their unit"
             )
         if not np.isfinite(self.stiffness.data).all():
-            raise CondensationError(f"{self.name}: stiffness is not finite: a gap or overflow in the exported matrix?")
+            raise CondensationError(
+                f"{self.name}: stiffness is not finite: check the exported matrix for gaps and overflow"
+            )
         diagonal = self.stiffness.diagonal()
         unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)))
         scaled = unit @ self.stiffness @ unit
         wrong = float(abs(scaled - scaled.T).max()) if n else 0.0
         if wrong > ASYMMETRY:
             raise CondensationError(
-                f"{self.name}: stiffness is not symmetric (by {wrong:.1e}): only one triangle read, or follower loads in it?"
+                f"{self.name}: stiffness is not symmetric (by {wrong:.1e}): supply both triangles, without follower loads"
             )
 
 
@@ -151,14 +153,14 @@ def section(fe_model: FiniteElements, frame: Array, name: str, kind: Kind = "ave
         CondensationError: no nodes (the message gives the distance of the nearest), or too few.
     """
     away = (fe_model.points - frame[:3, 3]) @ frame[:3, 0]
-    near = np.abs(away) < ON_SECTION * np.ptp(fe_model.points, axis=0).max()
-    if not near.any():
+    on_section = np.abs(away) < ON_SECTION * np.ptp(fe_model.points, axis=0).max()
+    if not on_section.any():
         nearest = away[np.abs(away).argmin()] if len(away) else np.inf
         raise CondensationError(
             f"section {name!r}: no nodes of {fe_model.name} in its plane, the nearest are {nearest:g} m from it: "
-            "wrong station or units? put sections where the mesh has a layer of nodes"
+            "check the station and its unit; put sections where the mesh has a layer of nodes"
         )
-    freedoms = np.flatnonzero(near)
+    freedoms = np.flatnonzero(on_section)
     return rigid(fe_model, freedoms, frame, name) if kind == "rigid" else average(fe_model, freedoms, frame, name)
 
 

@@ -3,24 +3,3 @@
 A ``Blade`` comes in; a ``Mesh`` of nodes and beam elements goes out (``discretize.discretize``). ``StrainLaw`` defines the
 strain of an element from the relative pose of its ends, ``beams.pencil`` gives its residual and M, C, K about any state.
 """
-
-from .beams import Beams, Pencil, Points, bushing
-from .discretize import Mass, divide
-from .measures import Measure, StrainLaw
-from .mesh import Mesh
-from .sections import StaticSolution, frames, root
-
-__all__ = [
-    "Beams",
-    "Mass",
-    "Measure",
-    "Mesh",
-    "Pencil",
-    "Points",
-    "StaticSolution",
-    "StrainLaw",
-    "bushing",
-    "divide",
-    "frames",
-    "root",
-]

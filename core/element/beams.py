@@ -61,14 +61,14 @@ class Beams:
         stiffness: (n, 6, 6) for the strain of that law.
         points: the inertia inside.
         preload: (n, 6) force conjugate to the strain, at zero strain.
-        inner_preload: (n, 6) force conjugate to β, at β = 0.
+        internal_preload: (n, 6) force conjugate to β, at β = 0.
     """
 
     law: StrainLaw
     stiffness: Array
     points: Points
     preload: Array
-    inner_preload: Array
+    internal_preload: Array
 
     @property
     def undeformed(self) -> Array:
@@ -87,11 +87,11 @@ class Beams:
         if (np.diff(p.element) < 0).any():
             raise ValueError("points: not sorted by element")
         first = np.searchsorted(p.element, np.arange(len(self.stiffness) + 1))
-        parts = (self.stiffness, self.preload, self.inner_preload, p.zeta0, p.shape, p.bubble, p.mass, p.force)
+        parts = (self.stiffness, self.preload, self.internal_preload, p.zeta0, p.shape, p.bubble, p.mass, p.force)
         return kernels.Beams(self.law.arrays, first, *(np.ascontiguousarray(a, dtype=float) for a in parts))
 
     @property
-    def inner(self) -> int:
+    def internal_count(self) -> int:
         """Number of internal coordinates of an element: six if it has mass inside, else none."""
         return 6 if len(self.points.element) else 0
 

@@ -20,7 +20,7 @@ def hub(like: Mesh, pose: Array) -> Mesh:
     """A tree without links: node 0, fixed to the rotating hub at ``pose`` (4, 4); for branches of the kind of ``like``."""
     none = slice(0, 0)
     b = like.beams
-    beams = Beams(part(b.law, none), b.stiffness[none], _sliced(b.points), b.preload[none], b.inner_preload[none])
+    beams = Beams(part(b.law, none), b.stiffness[none], _sliced(b.points), b.preload[none], b.internal_preload[none])
     return Mesh(pose[None], np.zeros((1, 6, 6)), beams, _sliced(like.samples), 0.0, np.zeros((1, 3)))
 
 
@@ -43,7 +43,7 @@ def attached(
         ValueError: elements of different strain measures, or with mass in one part and lumped in the other.
     """
     a, b = tree.beams, branch.beams
-    if tree.elements and branch.elements and (a.law.measure, a.inner) != (b.law.measure, b.inner):
+    if tree.elements and branch.elements and (a.law.measure, a.internal_count) != (b.law.measure, b.internal_count):
         raise ValueError("branch: its elements have another strain measure or mass than the tree's")
     screws, constants = springs(stiffness)
     if not len(constants):
@@ -62,7 +62,7 @@ def attached(
         stiffness=np.concatenate([a.stiffness, np.zeros((count, 6, 6)), b.stiffness]),
         points=_together(a.points, b.points, links + count),
         preload=np.concatenate([a.preload, none, b.preload]),
-        inner_preload=np.concatenate([a.inner_preload, none, b.inner_preload]),
+        internal_preload=np.concatenate([a.internal_preload, none, b.internal_preload]),
     )
     return Mesh(
         nodes=np.concatenate([tree.nodes, np.tile(frame, (inside, 1, 1)), moved @ branch.nodes]),
@@ -98,15 +98,6 @@ def springs(stiffness: Array) -> tuple[Array, Array]:
     screws = np.zeros((len(finite), 6))
     screws[:, finite] = (root / np.diagonal(root)).T
     return screws, np.square(1.0 / np.diagonal(root))
-
-
-def around_hub(blade: Mesh, count: int) -> Mesh:
-    """A rotor of ``count`` equal blades, clamped at equal angles to a hub that rotates about z."""
-    rotor = hub(blade, np.eye(4))
-    for k in range(count):
-        azimuth = sp.pose(sp.rotation(2, np.array(2.0 * np.pi * k / count)), np.zeros(3))
-        rotor = attached(rotor, 0, blade, azimuth @ blade.nodes[0])
-    return rotor
 
 
 def _sliced(points: Points) -> Points:

@@ -87,7 +87,7 @@ def discretize(
             stiffness=bm.end_stiffness(stiffness, undeformed, np.linalg.inv(seg.flexibility)),
             points=inside,
             preload=np.zeros((elements, 6)),
-            inner_preload=np.zeros((elements, 6)),
+            internal_preload=np.zeros((elements, 6)),
         ),
         samples=_samples(seg),
         scale=blade.length,
@@ -117,8 +117,8 @@ def divide(blade: Blade, elements: int) -> Array:
     while elements % (2 * halved) == 0 and elements >= 2 * MIN_SHARED * halved:
         halved *= 2
     number = halved * _shared_out(elements // halved, np.diff(ends))
-    inner = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], number, strict=True)]
-    return np.concatenate([*inner, ends[-1:]])
+    starts = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(ends[:-1], ends[1:], number, strict=True)]
+    return np.concatenate([*starts, ends[-1:]])
 
 
 def _shared_out(elements: int, lengths: Array) -> NDArray[np.intp]:

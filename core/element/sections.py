@@ -44,16 +44,16 @@ def root(blade: Blade) -> Array:
     return sp.pose(cone @ pitch, cone @ np.array([blade.hub_radius, 0.0, 0.0]))
 
 
-def frames(blade: Blade, s: Array, *, before: bool = False) -> Array:
+def frames(blade: Blade, s: Array, *, root_side: bool = False) -> Array:
     """Undeformed poses (k, 4, 4) of the sections at ``s`` (m), in the hub's axes: x tangent, y and z rotated by the twist.
 
-    At a kink, ``before`` gives the section on its root side, otherwise the one on its tip side.
+    At a kink, ``root_side`` gives the section on its root side, otherwise the one on its tip side.
     """
     twist_rotation = sp.rotation(0, twist_at(blade, s))
     if straight(blade):
         local = sp.pose(twist_rotation, np.outer(s, [1.0, 0.0, 0.0]))
     else:
-        position, t = curve.at(blade.stations, blade.curve, blade.kinks, s, before=before)
+        position, t = curve.at(blade.stations, blade.curve, blade.kinks, s, root_side=root_side)
         t /= np.linalg.norm(t, axis=1, keepdims=True)
         w = sp.skew(np.cross([1.0, 0.0, 0.0], t))
         swing = np.eye(3) + w + w @ w / (1.0 + t[:, 0])[:, None, None]
@@ -196,7 +196,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     until = partial_weights(GAUSS, (at - points.start[interval]) / h[interval])
     n = len(nodes) - 1
     placed, inside, at_points = np.split(frames(blade, np.concatenate([nodes, s.ravel(), at])), [n + 1, n + 1 + s.size])
-    ends = frames(blade, nodes[1:], before=True) if blade.kinks else placed[1:]
+    ends = frames(blade, nodes[1:], root_side=True) if blade.kinks else placed[1:]
     to_first = sp.inverse(placed[:-1])
     pose = to_first[element][:, None] @ inside.reshape(*s.shape, 4, 4)
     undeformed = to_first @ ends
@@ -266,7 +266,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     )
 
 
-def _bow(to_section: Array, part: Array, length: Array, last: Array, strain: Array, turned: Array) -> Array:
+def _bow(to_section: Array, part: Array, length: Array, last: Array, strain: Array, rotations: Array) -> Array:
     """Integrand (i, q, 6, 6) of G of ``measures`` at the Gauss points.
 
     Args:
@@ -274,13 +274,13 @@ def _bow(to_section: Array, part: Array, length: Array, last: Array, strain: Arr
         part: (i, q, 1) fraction of the element's length before the points.
         length: (i, 1, 1) of the elements, m.
         last: (i, 1, 6) logarithm of the undeformed elements.
-        strain, turned: (i, q, 6, 6), (i, q, 3, 6) the sections' strains, and their rotations in the element's axes, from δ.
+        strain, rotations: (i, q, 6, 6), (i, q, 3, 6) the sections' strains, and their rotations in the element's axes, from δ.
     """
     along = part * last
     uniform = to_section[..., 1:3, :] @ (sp.adjoint(sp.exp(along)) / length[..., None])  # the helicoid's shear strain
     turning = part[..., None] * sp.tangent(along)[..., 3:, :]
     tilt = np.array([[0.0, 0.0, 1.0], [0.0, -1.0, 0.0]]) @ to_section[..., :3, :3]  # θ_z and −θ_y of a rotation θ
-    displaced = strain[..., 1:3, :] + tilt @ turned  # y′ = Γ_y + θ_z, z′ = Γ_z − θ_y
+    displaced = strain[..., 1:3, :] + tilt @ rotations  # y′ = Γ_y + θ_z, z′ = Γ_z − θ_y
     helicoid = uniform + tilt @ turning
     shear = np.eye(6)[1:3] / length[..., None]  # of the helicoid
     return 0.5 * (_squared(displaced) - _squared(strain[..., 1:3, :]) - _squared(helicoid) + _squared(shear))

@@ -5,6 +5,7 @@ through the tree and once through a massless copy beyond the cut joint, and the 
 its coordinates and gives the same six constraint equations Φᶜ (Park et al. 2010, eq. 2).
 """
 
+from collections import Counter
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -160,15 +161,15 @@ def at_rate(mechanism: Mechanism, coordinate: str, rate: float) -> Mechanism:
     return replace(mechanism, motions=motions)
 
 
-def check(m: Mechanism) -> None:
+def check_mechanism(m: Mechanism) -> None:
     """Validate a mechanism.
 
     Raises:
         MechanismError: names used twice or unknown, an impossible inertia, a motion given twice.
     """
     names = [b.name for b in m.bodies]
-    for what, given in (("body", names), ("joint", [j.name for j in m.joints])):
-        twice = sorted({n for n in given if given.count(n) > 1})
+    for what, names_of_kind in (("body", names), ("joint", [j.name for j in m.joints])):
+        twice = sorted(name for name, times in Counter(names_of_kind).items() if times > 1)
         if twice:
             raise MechanismError(f"{what} {twice[0]!r}: given twice; names must be unique")
     if GROUND in names:

@@ -84,16 +84,16 @@ def separated(values: Complex, shapes: Complex, scale: float) -> Complex:
     order diagonalise the order within their span.
     """
     out = shapes.copy()
-    near = np.abs(values[:, None] - values) <= EQUAL * scale
+    close = np.abs(values[:, None] - values) <= EQUAL * scale
     order = (np.arange(len(shapes)) - len(shapes) // 2)[:, None, None]
-    for k in np.flatnonzero(near.sum(1) > 1):
-        same = np.flatnonzero(near[k])
-        if same[0] == k:
-            P = shapes[:, :, same]
-            flat = P.reshape(-1, len(same))
-            ordered = (order * P).reshape(-1, len(same))
+    for k in np.flatnonzero(close.sum(1) > 1):
+        cluster = np.flatnonzero(close[k])
+        if cluster[0] == k:
+            P = shapes[:, :, cluster]
+            flat = P.reshape(-1, len(cluster))
+            ordered = (order * P).reshape(-1, len(cluster))
             combination = np.linalg.eig(np.linalg.lstsq(flat, ordered, rcond=None)[0])[1]
-            out[:, :, same] = (flat @ combination).reshape(P.shape)
+            out[:, :, cluster] = (flat @ combination).reshape(P.shape)
     return out
 
 
@@ -105,5 +105,5 @@ def _ratio(candidates: Array, participation: Array) -> float:
     """Ratio of the second largest to the largest participation, among frequencies of different modulus."""
     best = int(participation.argmax())
     size = np.abs(candidates)
-    same = np.abs(size - size[best]) <= 1e-6 * max(float(np.ptp(candidates)), 1e-300)
-    return float(participation[~same].max(initial=0.0) / participation[same].sum())
+    cluster = np.abs(size - size[best]) <= 1e-6 * max(float(np.ptp(candidates)), 1e-300)
+    return float(participation[~cluster].max(initial=0.0) / participation[cluster].sum())

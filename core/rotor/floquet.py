@@ -40,12 +40,12 @@ def floquet(system: Periodic) -> Exponents:
 
 def _converged(system: Periodic) -> Exponents:
     """``floquet`` with steps halved until the exponents remain."""
-    steps, before = _FIRST, None
+    steps, previous = _FIRST, None
     while True:
         states = _fundamental(system, steps)
         multipliers, vectors = np.linalg.eig(states[-1])
-        if before is not None:
-            change = distance(before, multipliers)
+        if previous is not None:
+            change = distance(previous, multipliers)
             rounding = 10.0 * _EPS * _condition(vectors) * np.linalg.norm(states[-1], 2) / np.abs(multipliers)
             error = np.maximum(change, rounding) * abs(system.omega) / (2.0 * np.pi)
             if (change <= np.maximum(2.0 * np.pi * ACCURACY, 10.0 * rounding)).all():
@@ -55,7 +55,7 @@ def _converged(system: Periodic) -> Exponents:
                     f"Floquet: exponents change by {error.max() / abs(system.omega):.1e} Ω between {steps // 2} and {steps} "
                     "steps per revolution: a frequency is too high for this speed; reduce the system to its lower modes"
                 )
-        before, steps = multipliers, 2 * steps
+        previous, steps = multipliers, 2 * steps
     values: Complex = np.asarray(
         np.log(multipliers.astype(np.complex128)) * abs(system.omega) / (2.0 * np.pi), np.complex128
     )
@@ -75,10 +75,10 @@ def distance(a: Complex, b: Complex) -> Array:
 def _condition(vectors: Complex) -> Array:
     """(m,) condition numbers of the eigenvalues, at most the inverse root of the rounding unit, as at a double one."""
     try:
-        left = np.linalg.norm(np.linalg.inv(vectors), axis=1)
+        left_norms = np.linalg.norm(np.linalg.inv(vectors), axis=1)
     except np.linalg.LinAlgError:
-        left = np.full(len(vectors), np.inf)
-    return np.minimum(left * np.linalg.norm(vectors, axis=0), _EPS**-0.5)
+        left_norms = np.full(len(vectors), np.inf)
+    return np.minimum(left_norms * np.linalg.norm(vectors, axis=0), _EPS**-0.5)
 
 
 def _fundamental(system: Periodic, steps: int) -> Array:

@@ -47,20 +47,20 @@ def _converged(system: Periodic) -> Exponents:
     """``hill`` with harmonics added until the exponents remain."""
     n, omega = len(system.names), abs(system.omega)
     H, step = 2 * system.harmonics + 2, max(system.harmonics, 2)
-    before: Complex | None = None
+    previous: Complex | None = None
     change = np.inf
     while 2 * n * (2 * H + 1) <= MAX_SIZE:
         values, shapes, rounding = _centred(system, H)
         if len(values) == 2 * n:
             multipliers = np.exp(2.0 * np.pi * values / omega)
-            if before is not None:
-                change = float(distance(before, multipliers).max()) / (2.0 * np.pi)
+            if previous is not None:
+                change = float(distance(previous, multipliers).max()) / (2.0 * np.pi)
                 if change <= max(ACCURACY, rounding / omega):
                     error = np.full(len(values), max(change * omega, rounding))
                     return exponents(system.omega, values, error, shapes, system.mean[0], H)
-            before = multipliers
+            previous = multipliers
         else:
-            before = None
+            previous = None
         H += step
     raise PeriodicError(
         f"Hill: exponents change by {change:.1e} Ω at {H - step} harmonics: a frequency or the variation of the matrices is "
@@ -89,8 +89,8 @@ def _centred(system: Periodic, H: int) -> tuple[Complex, Complex, float]:
     shapes = separated(values, shapes * root, abs(system.omega)) / np.where(root > 0, root, 1.0)
     weight = (np.abs(shapes * root) ** 2).sum(1)
     centre = (order[:, None] * weight).sum(0) / weight.sum(0)
-    near = np.flatnonzero(np.abs(centre) < max(1.6, H / 2))
-    chosen = near[_window(centre[near])]
+    central = np.flatnonzero(np.abs(centre) < max(1.6, H / 2))
+    chosen = central[_window(centre[central])]
     largest = float(np.abs(values[chosen]).max(initial=0.0))
     return values[chosen], shapes[:, :, chosen], 100.0 * _EPS * max(largest, abs(system.omega) * H)
 

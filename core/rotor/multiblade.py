@@ -93,8 +93,8 @@ class Blades:
 
     def _spread(self, small: Array, otherwise: float) -> Array:
         out = np.zeros((*small.shape[:-2], self.size, self.size))
-        rest = np.setdiff1d(np.arange(self.size), self.groups)
-        out[..., rest, rest] = otherwise
+        ungrouped = np.setdiff1d(np.arange(self.size), self.groups)
+        out[..., ungrouped, ungrouped] = otherwise
         for group in self.groups:
             out[..., group[:, None], group] = small
         return out
@@ -125,9 +125,9 @@ def second_order(
     Equations are transformed by Tᵀ, so that symmetric matrices remain symmetric.
     """
     T, R = blades.transformation(psi), omega * blades.rate()
-    left = np.swapaxes(T, -1, -2)
-    mass, damping = left @ M @ T, left @ C @ T
-    return mass, damping + 2.0 * mass @ R, left @ K @ T + damping @ R + mass @ R @ R
+    transposed = np.swapaxes(T, -1, -2)
+    mass, damping = transposed @ M @ T, transposed @ C @ T
+    return mass, damping + 2.0 * mass @ R, transposed @ K @ T + damping @ R + mass @ R @ R
 
 
 def first_order(A: Array, psi: ArrayLike, omega: float, positions: Blades, rates: Index) -> Array:

@@ -12,9 +12,9 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from ..mechanism.description import Mechanism, MechanismError, check
+from ..mechanism.description import Mechanism, MechanismError, check_mechanism
 from ..mechanism.motion import Motion
-from ..steady.equilibrium import steady
+from ..steady.equilibrium import steady_state
 from ..tree import dynamics
 from ..tree.kinematics import Kinematics, kinematics
 from ..tree.partition import free_coordinates
@@ -123,7 +123,7 @@ def linearize(mechanism: Mechanism, spin: str, guess: Mapping[str, float] | None
 
 def orbit_of(mechanism: Mechanism, spin: str, guess: Mapping[str, float] | None = None) -> Orbit:
     """The periodic steady state; arguments and errors as for ``linearize``."""
-    check(mechanism)
+    check_mechanism(mechanism)
     turning = [m for m in mechanism.motions if m.rate]
     motion = next((m for m in turning if m.coordinate == spin), None)
     if motion is None:
@@ -166,7 +166,7 @@ def _frozen(mechanism: Mechanism, tree: Tree, spin: str, guess: Mapping[str, flo
     """(n,) coordinates of the equilibrium at ψ = 0, from which harmonic balance starts; the guess if there is none."""
     held = tuple(replace(m, position=0.0) if m.coordinate == spin else m for m in mechanism.motions)
     try:
-        return steady(compile_tree(replace(mechanism, motions=held)), guess).q
+        return steady_state(compile_tree(replace(mechanism, motions=held)), guess).q
     except MechanismError:
         q = np.zeros(len(tree.coordinates))
         for name, value in (guess or {}).items():

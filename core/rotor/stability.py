@@ -49,14 +49,14 @@ def limits(system: Callable[[float], Periodic], speeds: Sequence[float], accurac
     """
     out: list[Limit] = []
     unstable = [grows(system(speed)) for speed in speeds]
-    for (low, high), (before, after) in zip(pairwise(speeds), pairwise(unstable), strict=True):
-        if before == after:
+    for (low, high), (unstable_below, unstable_above) in zip(pairwise(speeds), pairwise(unstable), strict=True):
+        if unstable_below == unstable_above:
             continue
         while high - low > 2.0 * accuracy * abs(high):
             middle = 0.5 * (low + high)
-            if grows(system(middle)) == before:
+            if grows(system(middle)) == unstable_below:
                 low = middle
             else:
                 high = middle
-        out.append(Limit(0.5 * (low + high), 0.5 * (high - low), after))
+        out.append(Limit(0.5 * (low + high), 0.5 * (high - low), unstable_above))
     return out

@@ -56,21 +56,3 @@ def whirl(shape: Complex, pairs: NDArray[np.intp], omega: float, weights: Array 
     weight = np.ones(len(pairs)) if weights is None else weights
     positive, negative = (float(weight @ np.abs(x + sign * 1j * y) ** 2) for sign in (1.0, -1.0))
     return Whirl(positive, negative) if omega >= 0 else Whirl(negative, positive)
-
-
-def in_rotor(frequency: float, omega: float, name: str) -> float:
-    """Frequency in the rotor's frame, rad/s, of a mode with this one in the ground's frame, rad/s ≥ 0.
-
-    Args:
-        frequency: in the ground's frame.
-        omega: Ω, rad/s.
-        name: ``forward``, ``backward``; any other motion keeps its frequency.
-    """
-    shift = {"forward": -abs(omega), "backward": abs(omega)}.get(name, 0.0)
-    return abs(frequency + shift)
-
-
-def in_ground(frequency: float, omega: float, name: str) -> float:
-    """Frequency in the ground's frame, rad/s, from that in the rotor's, both ≥ 0; Ω below the frequency of a backward whirl."""
-    shift = {"forward": abs(omega), "backward": -abs(omega)}.get(name, 0.0)
-    return abs(frequency + shift)

@@ -20,11 +20,11 @@ def about_centre(inertia: Array) -> tuple[Array, Array, Array]:
     moment = 0.5 * (inertia[..., 3:, :3] - inertia[..., :3, 3:])  # m c×
     first = np.stack([moment[..., 2, 1], moment[..., 0, 2], moment[..., 1, 0]], axis=-1)
     centre = np.divide(first, mass[..., None], out=np.zeros_like(first), where=mass[..., None] > 0)
-    cross = skew(centre)
-    return mass, centre, inertia[..., 3:, 3:] + mass[..., None, None] * cross @ cross
+    across = skew(centre)
+    return mass, centre, inertia[..., 3:, 3:] + mass[..., None, None] * across @ across
 
 
 def transformed(inertia: Array, x: Array) -> Array:
-    """Inertias (..., 6, 6) given in frames ``x`` (..., 4, 4), about and in the frame that the poses are given in."""
+    """Inertias (..., 6, 6) given in frames at poses ``x`` (..., 4, 4), transformed to the frame in which ``x`` is given."""
     a = adjoint(inverse(x))
     return np.swapaxes(a, -1, -2) @ inertia @ a

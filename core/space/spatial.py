@@ -34,7 +34,7 @@ def inverse(x: Array) -> Array:
 
 
 def adjoint(x: Array) -> Array:
-    """(..., 6, 6): transforms twists from the pose's frame to the frame it is given in; its transpose, wrenches back."""
+    """(..., 6, 6): transforms twists from the frame at a pose to the reference frame; its transpose, wrenches back."""
     return kernels.adjoint(x)
 
 

@@ -24,7 +24,7 @@ class MissedModesError(ArithmeticError):
     """The eigensolver missed a mode or found one twice."""
 
 
-def check(p: TreePencil, frequencies: Array, next_frequencies: Array, rounding: float = 0.0) -> None:
+def check_complete(p: TreePencil, frequencies: Array, next_frequencies: Array, rounding: float = 0.0) -> None:
     """Prove that the frequencies are the lowest ones with their multiplicities.
 
     The count is taken in the gap above the last frequency. If that frequency belongs to a cluster of which only some modes
@@ -42,13 +42,13 @@ def check(p: TreePencil, frequencies: Array, next_frequencies: Array, rounding: 
     """
     last = frequencies[-1]
     next_ = next_frequencies.min(initial=2.0 * last)  # not above the last if that is one of an exact pair
-    near = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
+    distance = min(max(_MIN_DISTANCE, 10.0 * rounding), _MAX_DISTANCE)
     room = min(next_ / last - 1.0, 0.1)
     wide = room > _MIN_GAP
-    shift, expected = last * (1.0 + (0.3 * room if wide else near)), len(frequencies)
+    shift, expected = last * (1.0 + (0.3 * room if wide else distance)), len(frequencies)
     counted = below(p, shift)
     if counted > expected or (counted == expected and not wide):
-        shift = last * (1.0 - near)
+        shift = last * (1.0 - distance)
         expected = int((frequencies < shift).sum())
         counted = below(p, shift)
     if counted != expected:

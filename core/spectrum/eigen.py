@@ -141,16 +141,16 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     n = len(M)
     Z, W = rigid or (np.zeros((n, 0)), np.zeros((n, 0)))
     k, m = np.abs(np.diagonal(K)), np.diagonal(M)
-    both = (k > 0) & (m > 0)
-    time = 1.0 / np.sqrt(np.median(k[both] / m[both])) if both.any() else 1.0
+    usable = (k > 0) & (m > 0)
+    time = 1.0 / np.sqrt(np.median(k[usable] / m[usable])) if usable.any() else 1.0
     weight = k * time**2 + m
     unit = 1.0 / np.sqrt(np.where(weight > 0, weight, 1.0))  # scales coordinates of different units; time is scaled too
     M, C, K = (time**p * unit[:, None] * a * unit for p, a in ((0, M), (1, C), (2, K)))
     d = W.shape[1]
     w = np.linalg.qr(W / unit[:, None])[0].T
-    given = np.arange(n)
+    kept = np.arange(n)
     if d:
-        given = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
+        kept = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
     massive, massless = _by_mass(M)
     r, s = massive.shape[1], massless.shape[1]  # x = massive p + massless q, and y = λ p; M x λ² = λ M massive y
     zeros, identity = np.zeros((d, n + r)), np.eye(r)
@@ -159,11 +159,11 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
         [
             [np.zeros((r, n)), identity],
             [-w @ C @ massive, -w @ C @ massless, -w @ M @ massive],
-            [-K[given] @ massive, -K[given] @ massless, -C[given] @ massive],
+            [-K[kept] @ massive, -K[kept] @ massless, -C[kept] @ massive],
         ]
     )
     b = np.block(
-        [[identity, np.zeros((r, s + r))], [zeros], [np.zeros((n - d, r)), C[given] @ massless, M[given] @ massive]]
+        [[identity, np.zeros((r, s + r))], [zeros], [np.zeros((n - d, r)), C[kept] @ massless, M[kept] @ massive]]
     )
     try:
         pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))

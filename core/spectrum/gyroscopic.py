@@ -91,8 +91,8 @@ def _nearest_zero(p: TreePencil, count: int) -> tuple[Array, Complex, Array] | N
     eigenvalues, x = -1.0 / values, w[:n]
     if (np.abs(eigenvalues.real) > _MAX_REAL_PART * np.abs(eigenvalues)).any():
         return None
-    above = eigenvalues.imag > 0
-    omega, x = eigenvalues.imag[above], x[:, above]
+    positive = eigenvalues.imag > 0
+    omega, x = eigenvalues.imag[positive], x[:, positive]
     rows = np.ascontiguousarray(np.concatenate([x.real, x.imag], axis=1).T)
     kappa, inertia = ((rows * product(a, 1.0, p.links, rows)).sum(1).reshape(2, -1).sum(0) for a in (p.K, p.M))
     m = len(omega)

@@ -27,7 +27,7 @@ _MAX_SOLVE_ERROR = (
     1e-4  # relative error of a solution with K above which K is dominated by rounding error; usual are 1e-12
 )
 _FIRST_LOOK, _LOOK_EVERY = 13, 12  # numbers of vectors, for each of a block, before the first check; between checks
-_FIRST_LOOK_NEAR, _LOOK_EVERY_NEAR = 14, 2  # the same, starting from the modes of a similar pencil
+_FIRST_LOOK_WARM, _LOOK_EVERY_WARM = 14, 2  # the same, starting from the modes of a similar pencil
 _CLUSTER = 0.02  # relative width of a cluster of modes that do not converge
 _EXTRA_MODES = 4  # modes beyond those requested, to locate a gap
 MAX_WIDTH = 8
@@ -58,11 +58,11 @@ class Lowest(Eigen):
     start: Start
 
 
-def lanczos(p: TreePencil, count: int, near: Start | None = None) -> Lowest:
+def lanczos(p: TreePencil, count: int, warm_start: Start | None = None) -> Lowest:
     """The ``count`` lowest modes of a tree about a state where K is symmetric.
 
-    With ``near``, the ``start`` of a similar pencil, the basis is about a fifth smaller; but a mode that is orthogonal to all
-    of that pencil's is not found, and ``completeness`` reports it as missing.
+    With ``warm_start``, the ``start`` of a similar pencil, the basis is about a fifth smaller; but a mode that is orthogonal to
+    all of that pencil's is not found, and ``completeness`` reports it as missing.
 
     The frequencies follow from the gyroscopic Rayleigh quotient of the vectors, ``κ + iω x*Cx − ω² x*Mx = 0``, whose error is
     the square of that of the vectors (Lancaster 2013).
@@ -72,21 +72,21 @@ def lanczos(p: TreePencil, count: int, near: Start | None = None) -> Lowest:
         EigensolverError: if the basis is full before the modes have converged, or K is dominated by rounding error.
         MissedModesError: if a mode is missing; see ``completeness``.
     """
-    width = len(near.vectors) if near else _width(p)
+    width = len(warm_start.vectors) if warm_start else _width(p)
     while True:
         try:
-            return _lowest(p, count, near, width)
+            return _lowest(p, count, warm_start, width)
         except completeness.MissedModesError:  # of a frequency with more modes than a block has vectors
-            if near or width >= MAX_WIDTH:
+            if warm_start or width >= MAX_WIDTH:
                 raise
             width = min(2 * width, MAX_WIDTH)
 
 
-def _lowest(p: TreePencil, count: int, near: Start | None, width: int) -> Lowest:
+def _lowest(p: TreePencil, count: int, warm_start: Start | None, width: int) -> Lowest:
     """``lanczos`` with this number of vectors in a block."""
     a = _operator(p)
-    w = _start_vectors(p, a, near, width)
-    ritz = _converged(a, w, count, near.size if near else None)
+    w = _start_vectors(p, a, warm_start, width)
+    ritz = _converged(a, w, count, warm_start.size if warm_start else None)
     z = ritz.vectors.T
     x = np.stack([z.real, -z.imag], axis=1).reshape(2 * len(z), -1) @ ritz.basis[:, : w.shape[1] // 2]
     x = x.reshape(len(z), 2, -1)  # conjugate: i A⁻¹S has 1/ω at λ = −iω
@@ -94,10 +94,10 @@ def _lowest(p: TreePencil, count: int, near: Start | None, width: int) -> Lowest
     if not (np.abs(frequencies * ritz.values - 1.0) < 1e-2).all():
         raise EigensolverError("Lanczos failed: eigenvalues and Rayleigh quotients disagree; request fewer modes")
     order = np.argsort(frequencies)
-    completeness.check(p, frequencies[order], 1.0 / ritz.next_values)
+    completeness.check_complete(p, frequencies[order], 1.0 / ritz.next_values)
     x = x[order] / np.sqrt(np.maximum(kappa[order], 1e-300))[:, None, None]
     combined = (_phases(len(w), len(z)) @ z).real @ ritz.basis
-    start = Start(combined, len(ritz.basis) if near else 3 * count + _FIRST_LOOK_NEAR)
+    start = Start(combined, len(ritz.basis) if warm_start else 3 * count + _FIRST_LOOK_WARM)
     return Lowest(frequencies[order], (x[:, 0] + 1j * x[:, 1]).T, start)
 
 
@@ -111,7 +111,7 @@ def _operator(p: TreePencil) -> kernels.Operator:
     )
 
 
-def _start_vectors(p: TreePencil, a: kernels.Operator, near: Start | None, width: int) -> Array:
+def _start_vectors(p: TreePencil, a: kernels.Operator, warm_start: Start | None, width: int) -> Array:
     """The first block (w, 2n) of the basis.
 
     Raises:
@@ -119,7 +119,7 @@ def _start_vectors(p: TreePencil, a: kernels.Operator, near: Start | None, width
         EigensolverError: if K is dominated by rounding error.
     """
     n = len(p.residual)
-    w = _start(width, 2 * n).copy() if near is None else near.vectors.copy()
+    w = _start(width, 2 * n).copy() if warm_start is None else warm_start.vectors.copy()
     y = w[:, n:].copy()
     y = allowed(p.links, y)
     a.keep_massive(y)
@@ -133,7 +133,7 @@ def _start_vectors(p: TreePencil, a: kernels.Operator, near: Start | None, width
         )
     if not p.factor.positive:
         raise eigen.unstable()
-    return a.forward(w) if near is None else w
+    return a.forward(w) if warm_start is None else w
 
 
 @dataclass(frozen=True)
@@ -160,7 +160,7 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
         EigensolverError: if the basis is full before, or there is no mode.
     """
     limit, width = min(w.shape[1], max(200, 8 * count)), len(w)
-    look, every = (first_look, _LOOK_EVERY_NEAR) if first_look else (3 * count + _FIRST_LOOK * width, _LOOK_EVERY)
+    look, every = (first_look, _LOOK_EVERY_WARM) if first_look else (3 * count + _FIRST_LOOK * width, _LOOK_EVERY)
     basis, projected = np.empty((limit + width, w.shape[1])), np.zeros((look + width, look + width))
     size, last_step = 0, 0
     while True:
@@ -212,7 +212,7 @@ def _massive(p: TreePencil) -> tuple[Array, Array]:
     unit = 1.0 / np.sqrt(np.where(inertia > 0, inertia, 1.0))
     scaled = unit[:, :, None] * lumps * unit[:, None, :]
     massive = unit[:, :, None] * (np.linalg.pinv(scaled, hermitian=True) @ scaled) / unit[:, None, :]
-    for k in np.flatnonzero(links.clamped.any(axis=(1, 2))):  # a joint's ends move together
+    for k in np.flatnonzero(links.clamped_directions.any(axis=(1, 2))):  # a joint's ends move together
         massive[[links.parent[k], k + 1]] = np.eye(6)
     return massive[1:], lever
 

@@ -11,7 +11,7 @@ from ..effects import ALL_EFFECTS, Effects
 from ..element.measures import LARGEST_STRAIN
 from ..element.mesh import Mesh
 from ..modes import Modes
-from ..steady import blade_state as steady
+from ..steady import blade_state
 from ..steady.blade_state import Steady, SteadyStateError
 from ..steady.continuation import MAX_PREVIOUS
 from ..tree import pencil
@@ -36,11 +36,11 @@ class Options:
 
 @dataclass(frozen=True)
 class Start:
-    """What the solutions of a mesh at previous speeds give to the next one.
+    """The start of a mesh's next solution, from those at previous speeds.
 
     Attributes:
-        coordinates: ``steady.coordinates`` by Ω², the latest last.
-        basis: start of a basis from the modes at the last speed.
+        coordinates: ``blade_state.coordinates`` by Ω², the latest last.
+        basis: start of the eigensolver's basis, from the modes at the last speed.
     """
 
     coordinates: Mapping[float, Array] = field(default_factory=dict)
@@ -83,18 +83,20 @@ class Solved:
         return Modes(self.omega, self.frequencies, self.shapes, self.elements, strain=self.strain, seconds=self.seconds)
 
 
-def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None, near: Shape | None = None) -> Solved:
-    """Solve at one speed (rad/s), from the solutions at previous speeds; without any, Newton's method starts at ``near``."""
+def solve(
+    mesh: Mesh, omega: float, options: Options, start: Start | None = None, initial_shape: Shape | None = None
+) -> Solved:
+    """Solve at one speed (rad/s), from the solutions at previous speeds, or from ``initial_shape`` if there are none."""
     begun, start = time.perf_counter(), start or Start()
     gravity, effects = options.gravity, options.effects
-    guess = steady.extrapolate(mesh, start.coordinates, omega)
+    guess = blade_state.extrapolate(mesh, start.coordinates, omega)
     try:
-        state = balance(mesh, omega, gravity, effects, near if guess is None else guess)
+        state = balance(mesh, omega, gravity, effects, initial_shape if guess is None else guess)
     except SteadyStateError as error:
         if pencil.has_free_motion(pencil.linearize(mesh, pencil.undeformed(mesh), omega, gravity, effects)):
             raise free_root(omega) from error
         raise
-    strain = steady.largest_strain(mesh, state.shape)
+    strain = blade_state.largest_strain(mesh, state.shape)
     try:
         lowest, basis = _lowest(state.pencil, options.count, start.basis)
     except (UnstableError, EigensolverError) as error:
@@ -106,8 +108,8 @@ def solve(mesh: Mesh, omega: float, options: Options, start: Start | None = None
                 "the blade is too soft for this speed; check units, or lower the speed"
             ) from error
         raise type(error)(f"omega: {omega:.6g} rad/s: {mesh.elements} elements: {error}") from error
-    others = [(square, q) for square, q in start.coordinates.items() if square != omega**2]
-    previous = dict([*others, (omega**2, steady.coordinates(mesh, state.shape))][-MAX_PREVIOUS:])
+    at_other_speeds = [(square, q) for square, q in start.coordinates.items() if square != omega**2]
+    previous = dict([*at_other_speeds, (omega**2, blade_state.coordinates(mesh, state.shape))][-MAX_PREVIOUS:])
     shapes = mode_shapes(mesh, state.shape, pencil.on_nodes(state.pencil, lowest.vectors))
     return Solved(
         omega,
@@ -149,7 +151,7 @@ def rounding(mesh: Mesh, solved: Solved, options: Options) -> Array:
 
 
 def free_root(omega: float) -> UnstableError:
-    """The error of a blade whose root is free in a direction without stiffness at this speed (rad/s)."""
+    """The error to raise for a blade whose root is free in a direction without stiffness at this speed (rad/s)."""
     turning = "" if omega else "; rotation stiffens a flap hinge: give speeds above 0"
     return UnstableError(
         f"omega: {omega:.6g} rad/s: a free direction of the root has no stiffness: add a spring or clamp it{turning}"
@@ -159,12 +161,12 @@ def free_root(omega: float) -> UnstableError:
 def balance(mesh: Mesh, omega: float, gravity: Array, effects: Effects, guess: Shape | None = None) -> Steady:
     """The steady state with the given effects, and the pencil about it."""
     if effects.geometric and effects.prestretch:
-        state = steady.steady(mesh, omega, gravity, guess)
+        state = blade_state.steady_state(mesh, omega, gravity, guess)
         return (
             state
             if effects == ALL_EFFECTS
             else Steady(state.shape, pencil.linearize(mesh, state.shape, omega, gravity, effects))
         )
     still = pencil.undeformed(mesh)
-    loaded = steady.prestress_at_rest(mesh, omega, gravity) if effects.geometric else mesh
+    loaded = blade_state.prestress_at_rest(mesh, omega, gravity) if effects.geometric else mesh
     return Steady(still, pencil.linearize(loaded, still, omega, gravity, effects))

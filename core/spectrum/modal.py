@@ -7,7 +7,7 @@ import numpy as np
 from ..mechanism.description import Mechanism, MechanismError, at_time
 from ..rank import NotFiniteError
 from ..steady import periodic
-from ..steady.equilibrium import null_motions, steady
+from ..steady.equilibrium import null_motions, steady_state
 from ..tree.closure import assemble
 from ..tree.kinematics import kinematics
 from ..tree.linearization import Linearization, about
@@ -44,11 +44,11 @@ def linearize(
     """
     tree = compile_tree(at_time(mechanism, time))
     try:
-        state = steady(tree, guess)
+        state = steady_state(tree, guess)
         linear = about(tree, state, independent)
         _check_regular(linear)
         if all(m.law is None for m in mechanism.motions):
-            periodic.check(linear)
+            periodic.check_constant(linear)
     except NotFiniteError as error:
         raise MechanismError(str(error)) from error
     return linear
@@ -56,20 +56,20 @@ def linearize(
 
 def _check_regular(linear: Linearization) -> None:
     """Check that the number of degrees of freedom is the same in a nearby assembled configuration."""
-    tree, state, here = linear.tree, linear.state, linear.partition
+    tree, state, part = linear.tree, linear.state, linear.partition
     if not tree.welds:
         return
     units = coordinate_units(tree, length_at(tree, state.kinematics.poses))
-    count = len(here.independent)
-    nudge = here.R @ (units[here.independent] * np.random.default_rng(1921).normal(size=count))
+    count = len(part.independent)
+    nudge = part.R @ (units[part.independent] * np.random.default_rng(1921).normal(size=count))
     q = state.q.copy()
-    q[here.free] += _NUDGE * nudge / max(float(np.abs(nudge / units[here.free]).max(initial=0.0)), _NUDGE)
-    near = assemble(tree, dict(zip(tree.coordinates, q.tolist(), strict=True)))
-    nearby = freedom(tree, kinematics(tree, near, state.v, state.a))
-    if nearby < count:
+    q[part.free] += _NUDGE * nudge / max(float(np.abs(nudge / units[part.free]).max(initial=0.0)), _NUDGE)
+    q_nearby = assemble(tree, dict(zip(tree.coordinates, q.tolist(), strict=True)))
+    freedom_nearby = freedom(tree, kinematics(tree, q_nearby, state.v, state.a))
+    if freedom_nearby < count:
         raise MechanismError(
-            f"joints {', '.join(tree.weld_names)}: singular configuration: {count} degrees of freedom here but {nearby} "
-            "nearby, so no linear model is valid; start the assembly from another guess"
+            f"joints {', '.join(tree.weld_names)}: singular configuration: {count} degrees of freedom here but "
+            f"{freedom_nearby} nearby, so no linear model is valid; start the assembly from another guess"
         )
 
 

@@ -20,7 +20,7 @@ from ..element.discretize import Mass, discretize
 from ..element.measures import Measure
 from ..element.mesh import Mesh
 from ..modes import Modes
-from ..steady import blade_state as steady
+from ..steady import blade_state
 from ..steady.blade_state import SteadyStateError
 from ..tree.pencil import Shape
 from . import accuracy, grading
@@ -46,24 +46,24 @@ class Key(NamedTuple):
     """A mesh: the number of equal elements, or the times that the graded mesh is halved; whether rigid strains are softened."""
 
     elements: int | None = None
-    level: int = 0
+    halvings: int = 0
     softened: bool = False
 
 
 Starts = Mapping[Key, Start]
-"""What each mesh has solved at previous speeds."""
+"""The start of each mesh's next solution."""
 
 
 @dataclass(frozen=True)
 class Meshes:
-    """The meshes of one blade, each made at its first use; ``fastest``: the speed for which meshes are graded, rad/s."""
+    """The meshes of one blade, each made at its first use; ``grading_speed``: the speed for which meshes are graded, rad/s."""
 
     blade: Blade
     options: Options
     mass: Mass = "consistent"
     stiffness: Measure = "corotational"
     load: Array | None = None
-    fastest: float = 0.0
+    grading_speed: float = 0.0
 
     @property
     def order(self) -> int:
@@ -77,20 +77,20 @@ class Meshes:
 
     def mesh(self, key: Key) -> Mesh:
         """The mesh with this key."""
-        if key not in self._made:
+        if key not in self._meshes:
             blade = self.softened if key.softened and self.softened else self.blade
-            nodes = self._nodes(key.level) if key.elements is None else key.elements
-            self._made[key] = discretize(blade, nodes, self.mass, self.stiffness, self.load)
-        return self._made[key]
+            nodes = self._nodes(key.halvings) if key.elements is None else key.elements
+            self._meshes[key] = discretize(blade, nodes, self.mass, self.stiffness, self.load)
+        return self._meshes[key]
 
-    def _nodes(self, level: int) -> Array:
-        """Nodes of the graded mesh, halved ``level`` times."""
-        if not level:
-            return grading.coarse(self.blade, max(_FEWEST, self.options.count), self.fastest)
-        return grading.halved(self._nodes(level - 1))
+    def _nodes(self, halvings: int) -> Array:
+        """Nodes of the graded mesh, halved ``halvings`` times."""
+        if not halvings:
+            return grading.coarse(self.blade, max(_FEWEST, self.options.count), self.grading_speed)
+        return grading.halved(self._nodes(halvings - 1))
 
     @cached_property
-    def _made(self) -> dict[Key, Mesh]:
+    def _meshes(self) -> dict[Key, Mesh]:
         return {}
 
 
@@ -102,9 +102,9 @@ class AtSpeed:
     omega: float
     starts: dict[Key, Start]
 
-    def solved(self, key: Key, near: Shape | None = None) -> Solved:
+    def solved(self, key: Key, initial_shape: Shape | None = None) -> Solved:
         """The modes of a mesh; see ``mesh_solver.solve``."""
-        solved = solve(self.meshes.mesh(key), self.omega, self.meshes.options, self.starts.get(key), near)
+        solved = solve(self.meshes.mesh(key), self.omega, self.meshes.options, self.starts.get(key), initial_shape)
         self.starts[key] = solved.start
         return solved
 
@@ -144,17 +144,21 @@ def _refined(at: AtSpeed, requested: float) -> Modes:
     meshes, omega = at.meshes, at.omega
     solved: list[Solved] = []
     best: Modes | None = None
-    for level in itertools.count():
-        mesh = meshes.mesh(Key(level=level))
-        if level > 2 and mesh.elements > MAX_ELEMENTS:
+    for halvings in itertools.count():
+        mesh = meshes.mesh(Key(halvings=halvings))
+        if halvings > 2 and mesh.elements > MAX_ELEMENTS:
             break
-        near = steady.carried_over(meshes.mesh(Key(level=level - 1)), solved[-1].state.shape, mesh) if solved else None
+        initial_shape = (
+            blade_state.carried_over(meshes.mesh(Key(halvings=halvings - 1)), solved[-1].state.shape, mesh)
+            if solved
+            else None
+        )
         try:
-            solved.append(at.solved(Key(level=level), near))
+            solved.append(at.solved(Key(halvings=halvings), initial_shape))
         except _FAILURES as error:
             if best is not None:
                 break
-            if level >= (_TRIES if isinstance(error, UnstableError) else 2):  # coarser meshes may fail by coarseness
+            if halvings >= (_TRIES if isinstance(error, UnstableError) else 2):  # coarser meshes may fail by coarseness
                 raise
             solved = []
             continue
@@ -162,8 +166,8 @@ def _refined(at: AtSpeed, requested: float) -> Modes:
         if len(solved) < 3 or len({len(s.frequencies) for s in solved[-3:]}) > 1:
             continue
         estimate = accuracy.estimate(np.array([s.frequencies for s in solved[-3:]]), meshes.order)
-        rounded = at.rounding(Key(level=level), solved[-1])
-        factor, of_factor = without_bias(*(at.bias(Key(level=level - k), solved[-1 - k]) for k in (2, 1)))
+        rounded = at.rounding(Key(halvings=halvings), solved[-1])
+        factor, of_factor = without_bias(*(at.bias(Key(halvings=halvings - k), solved[-1 - k]) for k in (2, 1)))
         values = factor * estimate.values
         order = np.argsort(values)
         uncertainty = (estimate.of_values + of_factor + rounded)[order]

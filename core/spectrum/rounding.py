@@ -44,10 +44,13 @@ def rounding(linear: Linearization, eigenpairs: eigen.Eigen | eigen.Damped) -> A
     sizes = _sizes(linear)
     try:
         state = perturbed_again(linear.tree, linear.state, linear.names)
-        near = about(linear.tree, state, linear.names)
+        perturbed = about(linear.tree, state, linear.names)
     except MechanismError:  # rounding decides whether there is a steady state
         return np.full(len(values), np.inf)
-    changes = [np.abs(b - a) for a, b in zip((linear.M, linear.C, linear.K), (near.M, near.C, near.K), strict=True)]
+    changes = [
+        np.abs(b - a)
+        for a, b in zip((linear.M, linear.C, linear.K), (perturbed.M, perturbed.C, perturbed.K), strict=True)
+    ]
     unit = 1.0 / np.sqrt(sizes[2].diagonal() + np.abs(values).max() ** 2 * sizes[0].diagonal() + 1e-300)
     out = np.zeros(len(values))
     for k, value in enumerate(values.tolist()):

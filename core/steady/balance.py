@@ -40,7 +40,7 @@ class Balance:
         state: the state of motion.
         part: partition of the free coordinates.
         forces: (f,) generalised forces on the free coordinates, including those that loop reactions balance.
-        reduced: (i,) along the independent coordinates, where reactions do no work.
+        independent_forces: (i,) along the independent coordinates, where reactions do no work.
         dead: (f,) constant forces on the free coordinates, subtracted from ``forces``.
         trust: coordinates (n,) and the distance from them, rad or fraction of the length, at which Newton's method ends.
     """
@@ -49,14 +49,14 @@ class Balance:
     state: State
     part: partition.Partition
     forces: Array
-    reduced: Array
+    independent_forces: Array
     dead: Array | float = 0.0
     trust: tuple[Array, float] | None = None
 
     @cached_property
     def tangent(self) -> "Tangent":
         """The derivative of the reduced forces."""
-        check_finite(self.reduced)
+        check_finite(self.independent_forces)
         return tangent_at(self.tree, self.state, self.part)
 
     @cached_property
@@ -72,7 +72,7 @@ class Balance:
     @property
     def balanced(self) -> bool:
         """Whether each independent coordinate is balanced, apart from rounding."""
-        return bool((np.abs(self.reduced) <= BALANCE_TOLERANCE * self.tangent.rounding).all())
+        return bool((np.abs(self.independent_forces) <= BALANCE_TOLERANCE * self.tangent.rounding).all())
 
     @cached_property
     def _moved(self) -> "Balance | None":
@@ -96,8 +96,8 @@ class Balance:
 
         Near the solution a first correction may grow (P. Deuflhard, *Newton Methods for Nonlinear Problems*, 2004, sec. 2.1.1).
         """
-        near = max(self.length, self.length * self.contraction) < SMALL_CORRECTION
-        if self._moved is None or not (self.contraction <= _CONTRACTION or near or self.length < _SHORT_STEP):
+        is_short = max(self.length, self.length * self.contraction) < SMALL_CORRECTION
+        if self._moved is None or not (self.contraction <= _CONTRACTION or is_short or self.length < _SHORT_STEP):
             return None
         origin, radius = self.trust or (self.state.q, np.inf)
         return self._moved if self.tangent.length((self._moved.state.q - origin)[self.part.free]) <= radius else None
@@ -132,19 +132,19 @@ class Tangent:
     rounding: Array
     units: Array
 
-    def step(self, here: Balance) -> Array:
+    def step(self, balance: Balance) -> Array:
         """Newton's step (f,) of the free coordinates; of least norm along motions without stiffness."""
         root = np.sqrt(self.scale)
-        return -here.part.spread(self.K.solve(here.reduced / root) / root)
+        return -balance.part.spread(self.K.solve(balance.independent_forces / root) / root)
 
-    def relaxation(self, here: Balance, weight: float, allow_unstable: bool) -> Array:
+    def relaxation(self, balance: Balance, weight: float, allow_unstable: bool) -> Array:
         """Step (f,) of Newton's method with a stiffness added to each independent coordinate: ``weight`` times its own.
 
         With ``allow_unstable``, the added stiffness has the sign of its own: the step leads towards an unstable equilibrium.
         """
         root = np.sqrt(self.scale)
         added = np.diag(weight * self._sign(allow_unstable))
-        return -here.part.spread(ranked(self.matrix + added).solve(here.reduced / root) / root)
+        return -balance.part.spread(ranked(self.matrix + added).solve(balance.independent_forces / root) / root)
 
     def is_attractor(self, allow_unstable: bool) -> bool:
         """Whether short steps of ``relaxation`` from all nearby points lead here: no eigenvalue of D⁻¹ K̂ has Re < 0."""
@@ -155,9 +155,9 @@ class Tangent:
         """(i,) signs of the stiffness that ``relaxation`` adds."""
         return np.copysign(1.0, np.diagonal(self.matrix)) if allow_unstable else np.ones(len(self.matrix))
 
-    def norm(self, here: Balance) -> float:
+    def norm(self, balance: Balance) -> float:
         """Size of a residual in these scales."""
-        return float(np.linalg.norm(here.reduced / np.sqrt(self.scale)))
+        return float(np.linalg.norm(balance.independent_forces / np.sqrt(self.scale)))
 
     def length(self, step: Array) -> float:
         """Largest component of a step (f,) of the free coordinates, in their units."""
@@ -202,11 +202,11 @@ def tangent_at(tree: Tree, state: State, part: partition.Partition) -> Tangent:
     units = coordinate_units(tree, length_at(tree, k.poses))
     rounding, unit = rounding_at(tree, state, part), units[part.independent]
     least = (replace(part, R=np.abs(R)).onto(_forces_of_unit_strain(tree, state, units)[part.free]) + rounding) / unit
-    reduced = part.onto(by_independent)
-    scale = np.maximum(np.abs(np.diagonal(reduced)), STIFFNESS_ROUNDING / TOLERANCE * least)
+    stiffness = part.onto(by_independent)
+    scale = np.maximum(np.abs(np.diagonal(stiffness)), STIFFNESS_ROUNDING / TOLERANCE * least)
     check_finite(scale)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
-    scaled = reduced / root[:, None] / root
+    scaled = stiffness / root[:, None] / root
     error = np.sqrt(STIFFNESS_ROUNDING * np.maximum(least, 0.0)) / root
     return Tangent(scaled, ranked(scaled, error=error), root**2, rounding, units[part.free])
 
@@ -244,8 +244,8 @@ def _forces_of_unit_strain(tree: Tree, state: State, units: Array) -> Array:
     """(n,) forces on a coordinate from a unit strain of all stiffnesses that it carries: they bound its rounding."""
     k, c = state.kinematics, state.cartesian
     twist = np.repeat([length_at(tree, k.poses), 1.0], 3)
-    inner = units[tree.first_internal[:, None] + np.arange(6)]
+    internal_units = units[tree.first_internal[:, None] + np.arange(6)]
     bodies = np.tile(twist, len(k.poses))
-    wrench = np.append((abs(c.K) @ np.append(bodies, inner)).reshape(-1, 6), np.zeros((1, 6)), axis=0)
+    wrench = np.append((abs(c.K) @ np.append(bodies, internal_units)).reshape(-1, 6), np.zeros((1, 6)), axis=0)
     np.add.at(wrench, c.ends, (np.abs(c.stiffness) @ twist)[:, None, :])
     return projected(k, wrench[:-1], np.abs(k.J))

@@ -45,7 +45,7 @@ class Steady:
     pencil: TreePencil
 
 
-def steady(mesh: Mesh, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
+def steady_state(mesh: Mesh, omega: float, gravity: Array, start: Shape | None = None) -> Steady:
     """The steady state at ``omega`` (rad/s) under ``gravity`` (3,), m/s², in the hub's axes.
 
     Newton's method starts from ``start``, then from the undeformed shape. If both fail, it follows the state while Ω², gravity
@@ -164,8 +164,9 @@ class Iterate:
 def _converged(energy: float, previous_energy: float, rounding: float) -> bool:
     """Whether a step with this energy is the last one; ``previous_energy``: that of the last step, nan for the first one.
 
-    It is if its energy is that of rounding errors, of which ``rounding`` is a bound, and it is the first step or hardly smaller
-    than the last one, or if the next one would be negligible by quadratic convergence: rounding may be far below its bound.
+    A step is the last one if its energy is at most ``rounding``, the bound of that of rounding errors, and if it is the first
+    step, or hardly smaller than the last one, or the next one would be negligible by quadratic convergence. The latter two are
+    needed since rounding errors may be far below their bound.
     """
     if np.isnan(previous_energy):
         return energy <= rounding
@@ -241,7 +242,7 @@ def carried_over(mesh: Mesh, shape: Shape, finer: Mesh) -> Shape:
     nodes = finer.nodes.copy()
     nodes[first:] = sp.exp(at) @ finer.nodes[first:]
     relative = sp.inverse(nodes[finer.parent]) @ nodes[1:]
-    return assembled(finer, relative, np.zeros((len(nodes) - 1, finer.beams.inner)), shape.joints)
+    return assembled(finer, relative, np.zeros((len(nodes) - 1, finer.beams.internal_count)), shape.joints)
 
 
 def _lengths(mesh: Mesh) -> Array:
@@ -258,4 +259,4 @@ def prestress_at_rest(mesh: Mesh, omega: float, gravity: Array) -> Mesh:
     elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), still).factor
     rho = elimination.solution(elastic, -residual[:, :6].ravel()).reshape(-1, 6)
     loaded = replace(mesh.beams, preload=bm.linear_force(mesh.beams, rho))
-    return replace(mesh, beams=replace(loaded, inner_preload=-residual[:, 6:]))
+    return replace(mesh, beams=replace(loaded, internal_preload=-residual[:, 6:]))

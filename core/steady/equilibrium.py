@@ -25,7 +25,7 @@ Array = NDArray[Any]
 Index = NDArray[np.intp]
 
 
-def steady(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
+def steady_state(tree: Tree, guess: Mapping[str, float] | None = None) -> State:
     """Find the steady state: coordinates with a motion follow it, all others are at rest or at the rates the loops impose.
 
     Newton's method is used as long as its corrections contract. If it fails and a guess was supplied, pseudo-time relaxation
@@ -84,12 +84,12 @@ def _continued(tree: Tree, q: Array, grow: bool) -> tuple[float, Balance | None]
     dead = start.forces + J.T @ start.state.multipliers.ravel()
 
     def solve(fraction: float, guess: Array) -> tuple[Balance, Array] | None:
-        near, gap = close_loops(tree, guess, free)
+        closed, gap = close_loops(tree, guess, free)
         if np.abs(gap).max(initial=0.0) > CLOSED:
             return None
         with suppress(MechanismError):  # the loops are singular there
-            here = balance_at(_loaded(tree, fraction) if grow else tree, near, (1.0 - fraction) * dead)
-            balance = newton(replace(here, trust=(near, MAX_STEP)))
+            guessed = balance_at(_loaded(tree, fraction) if grow else tree, closed, (1.0 - fraction) * dead)
+            balance = newton(replace(guessed, trust=(closed, MAX_STEP)))
             if balance and balance.balanced:
                 return balance, balance.state.q
         return None
@@ -119,7 +119,7 @@ def _relaxed(tree: Tree, q: Array) -> Balance | None:
 def _without_guess(tree: Tree, q: Array) -> str:
     """The steady state found without a guess, in words: its coordinates furthest from the guess q (n,)."""
     try:
-        state = steady(tree)
+        state = steady_state(tree)
     except MechanismError:
         return ""
     distance = np.abs(state.q - q) / coordinate_units(tree, length_at(tree, state.kinematics.poses))
@@ -152,28 +152,28 @@ def perturbed_again(tree: Tree, state: State, independent: tuple[str, ...]) -> S
     """The steady state computed again, by one Newton step from a point a rounding error away, to show its accuracy.
 
     Raises:
-        MechanismError: as ``steady``.
+        MechanismError: as ``steady_state``.
     """
     free, eps = partition.free_coordinates(tree), float(np.finfo(float).eps)
     q = state.q.copy()
     sign = np.random.default_rng(1921).choice([-1.0, 1.0], len(free))
     units = coordinate_units(tree, length_at(tree, state.kinematics.poses))[free]
     q[free] += eps * sign * np.maximum(np.abs(q[free]), units)
-    here = balance_at(tree, close_loops(tree, q, free)[0], independent=independent)
-    q = here.state.q.copy()
-    q[free] += here.step
+    balance = balance_at(tree, close_loops(tree, q, free)[0], independent=independent)
+    q = balance.state.q.copy()
+    q[free] += balance.step
     return balance_at(tree, close_loops(tree, q, free)[0], independent=independent).state
 
 
-def _check_balance(here: Balance) -> None:
+def _check_balance(balance: Balance) -> None:
     """Check that no coordinate carries a force without a stiffness."""
-    if here.balanced:
+    if balance.balanced:
         return
-    rounding = here.tangent.rounding
-    worst = int(np.argmax(np.abs(here.reduced) / np.where(rounding > 0, rounding, 1.0)))
-    j = here.part.independent[worst]
+    rounding = balance.tangent.rounding
+    worst = int(np.argmax(np.abs(balance.independent_forces) / np.where(rounding > 0, rounding, 1.0)))
+    j = balance.part.independent[worst]
     raise MechanismError(
-        f"coordinate {here.tree.coordinates[j]!r}: no steady state: {here.reduced[worst]:.3g} "
-        f"{'N m' if here.tree.screw[j, 3:].any() else 'N'} remain unbalanced and no stiffness resists them; prescribe its "
+        f"coordinate {balance.tree.coordinates[j]!r}: no steady state: {balance.independent_forces[worst]:.3g} "
+        f"{'N m' if balance.tree.screw[j, 3:].any() else 'N'} remain unbalanced and no stiffness resists them; prescribe its "
         "motion, or add a spring"
     )

@@ -26,11 +26,11 @@ Point = TypeVar("Point", bound=Iterate)
 
 def newton(start: Point) -> Point | None:
     """The converged iterate; None if the iteration fails."""
-    previous, here = None, start
+    previous, current = None, start
     for _ in range(_MAX_ITERATIONS):
-        if here.converged(previous):
-            return here
-        previous, here = here, here.following()
-        if here is None:
+        if current.converged(previous):
+            return current
+        previous, current = current, current.following()
+        if current is None:
             return None
     return None

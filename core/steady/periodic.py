@@ -24,7 +24,7 @@ MAX_CHANGE = 1e-8
 """Largest change, relative to the size of each coordinate's terms, that counts as zero."""
 
 
-def check(linear: Linearization) -> None:
+def check_constant(linear: Linearization) -> None:
     """Compare M̂, Ĉ, K̂ and the balance with those at later instants of the same motion.
 
     All motions advance together, so that each in turn covers every distance in ``ADVANCES``. Dependent coordinates and those
@@ -68,12 +68,12 @@ def _largest_change(
     rates = [(abs(m.rate) / units[m.coordinate], abs(m.acceleration) / units[m.coordinate]) for m in moving]
     times = {advance / (rate + np.sqrt(acceleration)) for rate, acceleration in rates for advance in ADVANCES}
     omega = max(max(rate, np.sqrt(acceleration)) for rate, acceleration in rates)
-    reduced = _reduced(linear)
-    changes = (_change(linear, reduced, advancing or moving, time, omega) for time in times)
+    forces = _independent_forces(linear)
+    changes = (_change(linear, forces, advancing or moving, time, omega) for time in times)
     return max(changes, key=lambda change: change[0])
 
 
-def _reduced(linear: Linearization) -> Array:
+def _independent_forces(linear: Linearization) -> Array:
     """(i,) unbalanced forces along the independent coordinates."""
     state = linear.state
     forces = dynamics.unbalanced(linear.tree, state.kinematics, state.cartesian, state.q, state.v)
@@ -84,36 +84,34 @@ def _units(linear: Linearization) -> Array:
     return coordinate_units(linear.tree, length_at(linear.tree, linear.state.kinematics.poses))
 
 
-def _change(
-    linear: Linearization, reduced: Array, moving: list[Motion], time: float, omega: float
-) -> tuple[float, str]:
+def _change(linear: Linearization, forces: Array, moving: list[Motion], time: float, omega: float) -> tuple[float, str]:
     """The largest relative change after these motions alone have continued for ``time`` (s), and the name of what changes.
 
-    ``reduced`` (i,): the balance at the first instant.
+    ``forces`` (i,): the balance at the first instant.
     """
-    here = linear.state
+    state = linear.state
     tree = _after(linear.tree, moving, time)
-    q = here.q.copy()
+    q = state.q.copy()
     for m in moving:
         q[tree.coordinate(m.coordinate)] += m.rate * time + 0.5 * m.acceleration * time**2
-    carried = np.flatnonzero(driven_by_loops(linear.tree, here))
-    q[carried] += here.v[carried] * time
+    carried = np.flatnonzero(driven_by_loops(linear.tree, state))
+    q[carried] += state.v[carried] * time
     follow = np.setdiff1d(
         np.union1d(linear.partition.dependent, carried), [tree.coordinate(m.coordinate) for m in moving]
     )
     try:
         later = residual_closed_by(tree, q, follow, linear.names)
-        then = about(tree, later.state, p=later.part)
+        later_linear = about(tree, later.state, p=later.part)
     except MechanismError:  # a loop that cannot follow, or goes through a singularity
         return np.inf, "a loop"
     size = rounding_at(tree, later.state, later.part)
-    unbalanced = later.reduced - reduced
+    unbalanced = later.independent_forces - forces
     scale = np.abs(np.diagonal(linear.K)) + omega * np.abs(np.diagonal(linear.C)) + omega**2 * np.diagonal(linear.M)
     root = np.sqrt(np.maximum(scale, 1e-6 * size / _units(linear)[linear.partition.independent]))
     root = np.where(root > 0, root, 1.0)
     changes = {"the balance": float((np.abs(unbalanced) / np.where(size > 0, size, 1.0)).max())}
     for name, power in (("M", 2), ("C", 1), ("K", 0)):
-        difference = np.abs(getattr(then, name) - getattr(linear, name)) / root / root[:, None]
+        difference = np.abs(getattr(later_linear, name) - getattr(linear, name)) / root / root[:, None]
         changes[WORDS[name]] = float(omega**power * difference.max())
     what = max(changes, key=lambda k: changes[k])
     return changes[what], what

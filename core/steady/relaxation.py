@@ -28,26 +28,26 @@ def relaxed(tree: Tree, q: Array, allow_unstable: bool = False) -> Balance | Non
     (C. T. Kelley and D. E. Keyes, *SIAM J. Numer. Anal.* 35, 1998, 508–523) and shrink if a step is long or forces double.
     """
     weight, tried, rises = 1.0, np.inf, 0
-    here = balance_at(tree, q)
+    current = balance_at(tree, q)
     for _ in range(_MAX_RELAXATIONS):
-        nearly = weight <= min(0.1 * tried, _NEGLIGIBLE_WEIGHT) and here.length < SMALL_CORRECTION
-        if here.balanced or nearly:
+        nearly = weight <= min(0.1 * tried, _NEGLIGIBLE_WEIGHT) and current.length < SMALL_CORRECTION
+        if current.balanced or nearly:
             tried = weight
-            equilibrium = newton(here)
+            equilibrium = newton(current)
             if equilibrium and equilibrium.tangent.is_attractor(allow_unstable):
                 return equilibrium
-        if here.balanced:
+        if current.balanced:
             return None
-        tangent = here.tangent
-        step = tangent.relaxation(here, weight, allow_unstable)
-        following = here.after(step) if tangent.length(step) < SMALL_CORRECTION else None
-        growth = np.inf if following is None else tangent.norm(following) / tangent.norm(here)
+        tangent = current.tangent
+        step = tangent.relaxation(current, weight, allow_unstable)
+        following = current.after(step) if tangent.length(step) < SMALL_CORRECTION else None
+        growth = np.inf if following is None else tangent.norm(following) / tangent.norm(current)
         if following is not None and growth < 2.0:
             weight *= max(growth, 0.1)
             rises = rises + 1 if growth > 1.0 else 0
             if rises > _MAX_RISES:
                 return None
-            here = following
+            current = following
         elif weight < _MAX_WEIGHT:
             weight *= 4.0
         else:

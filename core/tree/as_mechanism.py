@@ -75,5 +75,5 @@ def single_element(beams: Beams, k: int) -> Beams:
         stiffness=beams.stiffness[at],
         points=Points(none, p.zeta0[inside], p.shape[inside], p.bubble[inside], p.mass[inside], p.force[inside]),
         preload=beams.preload[at],
-        inner_preload=beams.inner_preload[at],
+        internal_preload=beams.internal_preload[at],
     )

@@ -84,10 +84,10 @@ class _Sum:
             np.add.at(self.g, ends[acts, i], pencil.residual[acts, row])
             np.add.at(self.size, ends[acts, i], np.abs(pencil.residual[acts, row]))
             for j in range(ends.shape[1]):
-                both = acts & (ends[:, j] >= 0)
+                on_bodies_both = acts & (ends[:, j] >= 0)
                 column = slice(6 * j, 6 * j + 6)
-                M, C, K = (part[both, row, column] for part in (pencil.M, pencil.C, pencil.remainder))
-                self.blocks.append((ends[both, i], ends[both, j], (M, C, K)))
+                M, C, K = (part[on_bodies_both, row, column] for part in (pencil.M, pencil.C, pencil.remainder))
+                self.blocks.append((ends[on_bodies_both, i], ends[on_bodies_both, j], (M, C, K)))
 
     def total(self) -> Cartesian:
         """The sum as a ``Cartesian``."""
@@ -156,8 +156,8 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
     out.size[: len(M)] += parts[..., 0]
     mt = M @ ad_Y
     C = -np.swapaxes(mt, -1, -2) - mt - sp.coadjoint(momentum)
-    each = np.arange(len(M))
-    out.blocks.append((each, each, (M, C, -M @ sp.ad(fall))))
+    bodies = np.arange(len(M))
+    out.blocks.append((bodies, bodies, (M, C, -M @ sp.ad(fall))))
 
 
 def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Array, Array]:
@@ -215,14 +215,14 @@ def _load(tree: Tree, k: Kinematics, load: Load, out: _Sum) -> None:
     K = np.zeros((6, 6))
     K[:3, 3:] = -sp.skew(force)
     out.g[body] -= to_body[:3].T @ force
-    here, none = np.array([body]), np.zeros((1, 6, 6))
-    out.blocks.append((here, here, (none, none, (to_body.T @ K @ to_body)[None])))
+    row, none = np.array([body]), np.zeros((1, 6, 6))
+    out.blocks.append((row, row, (none, none, (to_body.T @ K @ to_body)[None])))
 
 
 def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
     a, b = batch.ends.T
     (xa, ya, aa), (xb, yb, _) = _state(k, a, batch.at_a), _state(k, b, batch.at_b)
-    massive = batch.beams.inner > 0
+    massive = batch.beams.internal_count > 0
     if massive:
         _check_steady(tree, batch, length_at(tree, k.poses), ya, yb, aa)
     to_a = sp.adjoint(sp.inverse(xa))
@@ -286,8 +286,8 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``joint_stiffness``.
     """
     B, B1, B2 = (rows.reshape(-1, rows.shape[-1]) for rows in (k.B, k.B1, k.B2))
-    on_bodies = np.stack([c.M @ B, 2.0 * (c.M @ B1) + c.C @ B, c.M @ B2 + c.C @ B1 + c.K @ B])
-    M, C, K = (projected(k, w) for w in on_bodies.reshape(3, -1, 6, B.shape[-1]))  # (eq. 10)
+    on_bodies = (c.M @ B, 2.0 * (c.M @ B1) + c.C @ B, c.M @ B2 + c.C @ B1 + c.K @ B)
+    M, C, K = (projected(k, w.reshape(-1, 6, B.shape[-1])) for w in on_bodies)  # (eq. 10)
     j = tree.joints
     K[:j, :j] += joint_stiffness(tree, k, c)
     for s in tree.mechanism.coordinate_springs:

@@ -53,14 +53,14 @@ class Kinematics:
     @cached_property
     def B1(self) -> Array:
         """(b + m, 6, n) first rate of B along the motion."""
-        return self._with_inner(transformation(self.tree, self.J1))
+        return self._with_internal(transformation(self.tree, self.J1))
 
     @cached_property
     def B2(self) -> Array:
         """(b + m, 6, n) second rate of B along the motion."""
-        return self._with_inner(transformation(self.tree, self.J2))
+        return self._with_internal(transformation(self.tree, self.J2))
 
-    def _with_inner(self, rows: Array) -> Array:
+    def _with_internal(self, rows: Array) -> Array:
         return np.concatenate([rows, np.zeros((len(self.tree.first_internal), *rows.shape[1:]))])
 
 

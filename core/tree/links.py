@@ -27,17 +27,17 @@ class Links:
     Attributes:
         parent: (n,) node at which each link begins.
         to_child: (n, 6, 6) Ad⁻¹ of the pose of each link's end b in the frame of its end a.
-        clamped: (n, 6, 6) projectors of ρ on the directions that joints clamp; (0, 6, 6) without joints.
+        clamped_directions: (n, 6, 6) projectors of ρ on the directions that joints clamp; (0, 6, 6) without joints.
     """
 
     parent: NDArray[np.int64]
     to_child: Array
-    clamped: Array
+    clamped_directions: Array
 
     @cached_property
     def arrays(self) -> kernels.Links:
         """The links for compiled kernels."""
-        return kernels.Links(self.parent, self.to_child, self.clamped)
+        return kernels.Links(self.parent, self.to_child, self.clamped_directions)
 
 
 def twists(links: Links, x: Array) -> Array:
@@ -55,10 +55,10 @@ def gathered(links: Links, f: Array, g: Array) -> Array:
 
 def allowed(links: Links, x: Array) -> Array:
     """Vectors x (k, dn) without the motions that joints clamp."""
-    if not links.clamped.size:
+    if not links.clamped_directions.size:
         return x
     out = x.reshape(len(x), len(links.parent), -1).copy()
-    out[..., :6] -= (links.clamped @ out[..., :6, None])[..., 0]
+    out[..., :6] -= (links.clamped_directions @ out[..., :6, None])[..., 0]
     return out.reshape(x.shape)
 
 

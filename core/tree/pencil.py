@@ -64,7 +64,7 @@ class Shape:
 
 def undeformed(mesh: Mesh) -> Shape:
     """The undeformed shape."""
-    beta = np.zeros((len(mesh.nodes) - 1, mesh.beams.inner))
+    beta = np.zeros((len(mesh.nodes) - 1, mesh.beams.internal_count))
     return Shape(mesh.nodes, beta, mesh.between, np.zeros(len(mesh.joints)))
 
 
@@ -80,7 +80,7 @@ def linearize(mesh: Mesh, shape: Shape, omega: float, gravity: Array, effects: E
 
     Args:
         mesh: the nodes and elements.
-        shape: where.
+        shape: the configuration to linearise about.
         omega: rotor speed, rad/s.
         gravity: (3,) m/s², in the hub's axes.
         effects: the effects included; without the geometric ones, the residual is not meaningful.
@@ -108,17 +108,17 @@ def _with_joints(
     mesh: Mesh, shape: Shape, links: Links, residual: Array, K: Array, spring: Array, geometric: bool
 ) -> Links:
     """Add the joints' forces to the residual (n, d) and their stiffness to K and ``spring``; the links with what they clamp."""
-    clamped = np.zeros((len(residual), 6, 6))
+    clamped_directions = np.zeros((len(residual), 6, 6))
     for joint, q in zip(mesh.joints, shape.joints, strict=True):
         k, force = joint.link, joint.stiffness * q * joint.rate
-        clamped[k] = np.eye(6) - np.outer(joint.screw, joint.rate)
+        clamped_directions[k] = np.eye(6) - np.outer(joint.screw, joint.rate)
         spring[k] = joint.stiffness * np.outer(joint.rate, joint.rate)
         # the wrench on end b follows end a: see add_elastic in beam.hpp
         turning = sp.coadjoint(-residual[k, :6]) if geometric else np.zeros((6, 6))
         K[k, :6, 6:12] += turning
         K[k, 6:12, 6:12] += turning
         residual[k, :6] += force
-    return Links(links.parent, links.to_child, clamped)
+    return Links(links.parent, links.to_child, clamped_directions)
 
 
 def on_nodes(p: TreePencil, vectors: NDArray[np.complex128]) -> Array:
@@ -128,12 +128,14 @@ def on_nodes(p: TreePencil, vectors: NDArray[np.complex128]) -> Array:
 
 def has_free_motion(p: TreePencil) -> bool:
     """Whether the joints allow the parts that they connect to move as rigid bodies without stiffness, apart from rounding."""
-    clamped = p.links.clamped
-    joints = np.flatnonzero(clamped.any(axis=(1, 2)) & (np.trace(clamped, axis1=1, axis2=2) < 5.5))
+    clamped_directions = p.links.clamped_directions
+    joints = np.flatnonzero(
+        clamped_directions.any(axis=(1, 2)) & (np.trace(clamped_directions, axis1=1, axis2=2) < 5.5)
+    )
     if not len(joints):
         return False
     x = np.zeros((len(joints), len(p.links.parent), len(p.residual) // len(p.links.parent)))
-    x[np.arange(len(joints)), joints, :6] = np.linalg.svd(np.eye(6) - clamped[joints])[0][
+    x[np.arange(len(joints)), joints, :6] = np.linalg.svd(np.eye(6) - clamped_directions[joints])[0][
         :, :, 0
     ]  # no strain elsewhere
     x = x.reshape(len(x), -1)

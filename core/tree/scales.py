@@ -18,7 +18,7 @@ def coordinate_units(tree: Tree, length: float) -> Array:
     units = np.where(tree.screw[:, 3:].any(1), 1.0, length)
     twist = np.repeat([length, 1.0], 3)[:, None]
     for batch in tree.batches:
-        if not batch.beams.inner:
+        if not batch.beams.internal_count:
             continue
         displacement = np.zeros((len(batch.index), 6))
         np.maximum.at(displacement, batch.beams.points.element, np.abs(batch.beams.points.bubble / twist).max(1))

@@ -8,7 +8,7 @@ from numpy.typing import NDArray
 
 from ..element.beams import Beams, Points
 from ..element.measures import joined
-from ..mechanism.description import GROUND, Mechanism, MechanismError, check
+from ..mechanism.description import GROUND, Mechanism, MechanismError, check_mechanism
 from ..mechanism.joints import SCREWS, Joint, coordinate_names
 from ..space import spatial as sp
 from .topology import Batch, Tree
@@ -23,7 +23,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     Raises:
         MechanismError: names used twice or unknown, a body that no joint reaches, an impossible inertia.
     """
-    check(mechanism)
+    check_mechanism(mechanism)
     added = _Coordinates()
     # Φ = [Φᴶ; Φᶜ; Φᴹ] = 0 (eq. 2): joints of the tree, ``cuts``, and the mechanism's motions
     placement, cuts = _spanned(mechanism, added)
@@ -34,7 +34,7 @@ def compile_tree(mechanism: Mechanism) -> Tree:
     bodies = (*names, *(f"{joint.child} beyond {joint.name}" for joint in cuts))
     inertia = [*(b.inertia for b in mechanism.bodies), *np.zeros((len(cuts), 6, 6))]
     links = [*(placement[name] for name in names), *copies]
-    first = [_inner(added, k, beam.beams.inner) for k, beam in enumerate(mechanism.beams)]
+    first = [_add_internal(added, k, beam.beams.internal_count) for k, beam in enumerate(mechanism.beams)]
     n = len(added.names)
     parent, internal = np.array(added.parent, dtype=np.intp), np.array([j for j in first if j >= 0], dtype=np.intp)
     link = np.array([k for k, _ in links], dtype=np.intp)
@@ -111,7 +111,7 @@ def _hang(joint: Joint, forward: bool, placement: Mapping[str, Placement], added
     return link, pose @ sp.inverse(far_frame)
 
 
-def _inner(added: _Coordinates, beam: int, count: int) -> int:
+def _add_internal(added: _Coordinates, beam: int, count: int) -> int:
     """Add the internal coordinates of a beam; return the first, or −1 without any."""
     names = [f"beam {beam + 1}.{j + 1}" for j in range(count)]
     return min((added.add(name, -1, np.eye(4), np.zeros(6)) for name in names), default=-1)
@@ -137,41 +137,41 @@ def _batches(mechanism: Mechanism, first: list[int], bodies: dict[str, int]) -> 
     rows = np.where(np.array(first, dtype=np.intp) >= 0, len(bodies) + np.cumsum(np.array(first) >= 0) - 1, -1)
     by_kind: dict[tuple[str, int], list[int]] = {}
     for k, beam in enumerate(mechanism.beams):
-        by_kind.setdefault((beam.beams.law.measure, beam.beams.inner), []).append(k)
+        by_kind.setdefault((beam.beams.law.measure, beam.beams.internal_count), []).append(k)
     out = []
     for index in by_kind.values():
-        some = [mechanism.beams[k] for k in index]
-        ends = [[bodies.get(b.body_a, -1), bodies.get(b.body_b, -1)] for b in some]
+        single_beams = [mechanism.beams[k] for k in index]
+        ends = [[bodies.get(b.body_a, -1), bodies.get(b.body_b, -1)] for b in single_beams]
         out.append(
             Batch(
                 index=np.array(index, dtype=np.intp),
                 ends=np.array(ends, dtype=np.intp),
                 first_internal=np.array([first[k] for k in index], dtype=np.intp),
                 internal_row=rows[index],
-                beams=_together([b.beams for b in some]),
-                at_a=np.array([b.at_a for b in some]),
-                at_b=np.array([b.at_b for b in some]),
-                axes=np.array([bodies.get(b.axes_of, -1) for b in some], dtype=np.intp),
-                damping=np.array([b.damping for b in some]),
+                beams=_together([b.beams for b in single_beams]),
+                at_a=np.array([b.at_a for b in single_beams]),
+                at_b=np.array([b.at_b for b in single_beams]),
+                axes=np.array([bodies.get(b.axes_of, -1) for b in single_beams], dtype=np.intp),
+                damping=np.array([b.damping for b in single_beams]),
             )
         )
     return tuple(out)
 
 
-def _together(some: list[Beams]) -> Beams:
+def _together(single_beams: list[Beams]) -> Beams:
     """Single elements as one batch."""
 
-    def each(name: str) -> Array:
-        return np.concatenate([getattr(b, name) for b in some])
+    def concatenated(name: str) -> Array:
+        return np.concatenate([getattr(b, name) for b in single_beams])
 
-    parts = [b.points for b in some]
+    parts = [b.points for b in single_beams]
     points = Points(
-        element=np.repeat(np.arange(len(some)), [len(p.element) for p in parts]),
+        element=np.repeat(np.arange(len(single_beams)), [len(p.element) for p in parts]),
         zeta0=np.concatenate([p.zeta0 for p in parts]),
         shape=np.concatenate([p.shape for p in parts]),
         bubble=np.concatenate([p.bubble for p in parts]),
         mass=np.concatenate([p.mass for p in parts]),
         force=np.concatenate([p.force for p in parts]),
     )
-    names = ("stiffness", "preload", "inner_preload")
-    return Beams(joined([b.law for b in some]), points=points, **{name: each(name) for name in names})
+    names = ("stiffness", "preload", "internal_preload")
+    return Beams(joined([b.law for b in single_beams]), points=points, **{name: concatenated(name) for name in names})

@@ -19,7 +19,11 @@ def largest_strain(tree: Tree, state: State) -> float:
     largest = 0.0
     for batch, x in _relative(tree, state.kinematics.poses):
         law = batch.beams.law
-        beta = state.q[batch.first_internal[:, None] + np.arange(6)] if batch.beams.inner else np.zeros((len(x), 0))
+        beta = (
+            state.q[batch.first_internal[:, None] + np.arange(6)]
+            if batch.beams.internal_count
+            else np.zeros((len(x), 0))
+        )
         strain = measures.relative_strain(law, x, beta)[~batch.beams.bushings]
         largest = max(largest, float(strain.max(initial=0.0)))
     return largest

@@ -57,10 +57,10 @@ class Assumed:
 
 def motions(assumed: Assumed | None, *parts: tuple[Blade, Mesh]) -> tuple[Array | None, ...]:
     """(k, dn) rates of strains of each of tower and blade that has assumed shapes."""
-    given = (assumed.tower, assumed.blade) if assumed else (None, None)
+    shape_sets = (assumed.tower, assumed.blade) if assumed else (None, None)
     return tuple(
         None if shapes is None else restricted_motions(beam, mesh, shapes)
-        for shapes, (beam, mesh) in zip(given, parts, strict=True)
+        for shapes, (beam, mesh) in zip(shape_sets, parts, strict=True)
     )
 
 
@@ -77,9 +77,9 @@ def restricted_motions(beam: Blade, mesh: Mesh, shapes: Field) -> Array:
     axes = mesh.nodes[:, :3, :3]
     base = axes[0] @ sp.rotation(0, np.array(float(beam.twist[0]))).T
     along = ((mesh.nodes[:, :3, 3] - mesh.nodes[0, :3, 3]) @ base)[:, 0]
-    displaced, turned = shapes(along)
+    displaced, rotations = shapes(along)
     local = base.T @ axes
-    twists = np.concatenate([np.einsum("nji,knj->kni", local, part) for part in (displaced, turned)], axis=-1)
+    twists = np.concatenate([np.einsum("nji,knj->kni", local, part) for part in (displaced, rotations)], axis=-1)
     to_parent = np.linalg.inv(p.links.to_child)
     rho = np.einsum("nij,knj->kni", to_parent, twists[:, 1:]) - twists[:, mesh.parent]
     out = np.zeros((len(rho), n, d))

@@ -49,7 +49,7 @@ class Component:
         return len(self.frequencies)
 
 
-def reduced(mesh: Mesh, state: Steady, count: int, by_tip: bool = False) -> Component:
+def reduced_component(mesh: Mesh, state: Steady, count: int, by_tip: bool = False) -> Component:
     """A part reduced about its steady state.
 
     Args:

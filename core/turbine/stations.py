@@ -27,11 +27,11 @@ COLUMNS = ("x", "y", "z", "rotation")
 """Displacements, and the rotation about x."""
 
 
-def elastic(reduced: Component, mesh: Mesh, shape: Shape, links: Links) -> NDArray[np.complex128]:
+def elastic(component: Component, mesh: Mesh, shape: Shape, links: Links) -> NDArray[np.complex128]:
     """(r, 21, 4) displacement and rotation about x at the stations in each elastic motion, relative to node 0."""
-    nodes = twists(links, reduced.vectors)
-    both = np.stack([nodes, np.zeros_like(nodes)], axis=1).reshape(-1, *nodes.shape[1:])
-    return mode_shapes(mesh, shape, both)
+    nodes = twists(links, component.vectors)
+    rows = np.stack([nodes, np.zeros_like(nodes)], axis=1).reshape(-1, *nodes.shape[1:])
+    return mode_shapes(mesh, shape, rows)
 
 
 def motions(turbine: Turbine, a: Assembled, vectors: Complex) -> Complex:

@@ -143,7 +143,7 @@ def ordinal(number: int) -> str:
     return f"{number}{suffix}"
 
 
-def check(length: float, support: Support) -> None:
+def check_tower(length: float, support: Support) -> None:
     """Check a support of a tower of this length, m.
 
     Raises:
@@ -159,10 +159,10 @@ def check(length: float, support: Support) -> None:
     for _, stiffness in support.springs:
         checked("spring", stiffness, False)
     soil = np.zeros((0, 2)) if support.soil is None else support.soil
-    for what, given in (("springs", heights), ("soil", soil[:, 0])):
-        if len(given) and not (-SAME * length <= given.min() <= given.max() <= (1 + SAME) * length):
+    for what, positions in (("springs", heights), ("soil", soil[:, 0])):
+        if len(positions) and not (-SAME * length <= positions.min() <= positions.max() <= (1 + SAME) * length):
             raise ValueError(
-                f"{what}: heights from {given.min():g} to {given.max():g} m: the tower is {length:g} m high"
+                f"{what}: heights from {positions.min():g} to {positions.max():g} m: the tower is {length:g} m high"
             )
     if len(soil) and (len(soil) < 2 or (np.diff(soil[:, 0]) <= 0).any() or (soil[:, 1] < 0).any()):
         raise ValueError("soil: give two heights or more that ascend, and no negative stiffness")
@@ -174,7 +174,7 @@ def tower_mesh(beam: Blade, support: Support, elements: int, at: Array | None = 
     Raises:
         ValueError: a stiffness is not symmetric or not positive, or a spring is not on the tower.
     """
-    check(beam.length, support)
+    check_tower(beam.length, support)
     mesh = discretize(beam, _ends(beam, support, elements), at=at)
     if support.base is None:
         return mesh
@@ -238,8 +238,8 @@ def _of_link(p: TreePencil, link: int, moved: Array) -> Array:
     at_b = moved[:, 6:12] @ p.links.to_child[link]
     out = np.zeros((len(moved), p.K.shape[1]))
     out[:, :6], out[:, 6:12] = moved[:, :6] + at_b, at_b
-    inner = min(moved.shape[1], out.shape[1]) - 12
-    out[:, 12 : 12 + inner] = moved[:, 12 : 12 + inner]
+    internal = min(moved.shape[1], out.shape[1]) - 12
+    out[:, 12 : 12 + internal] = moved[:, 12 : 12 + internal]
     return out
 
 

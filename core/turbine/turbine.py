@@ -221,7 +221,7 @@ def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Ass
         state = standing(mesh, Tower(turbine.tower, turbine.support, turbine.gravity), how.tower_elements)
         tower_motions, blade_motions = motions(assumed, (turbine.tower, mesh), (turbine.blade, blade_mesh))
         if tower_motions is None:
-            tower = component.reduced(mesh, state, how.tower_modes, by_tip=True)
+            tower = component.reduced_component(mesh, state, how.tower_modes, by_tip=True)
         else:
             tower = component.restricted(mesh, state, tower_motions)
     r = tower.size
@@ -241,7 +241,7 @@ def assemble(made: Machine, omega: float) -> Assembled:
     with one_thread():
         state = balance(made.blade_mesh, omega, np.zeros(3), ALL_EFFECTS)
         if made.blade_motions is None:
-            blade = component.reduced(made.blade_mesh, state, made.resolution.blade_modes)
+            blade = component.reduced_component(made.blade_mesh, state, made.resolution.blade_modes)
         else:
             blade = component.restricted(made.blade_mesh, state, made.blade_motions)
     coupled = rotor(turbine, blade, omega, 0.0)
@@ -293,7 +293,7 @@ def assemble(made: Machine, omega: float) -> Assembled:
 def rigid_rotor(turbine: Turbine, mesh: Mesh) -> Array:
     """(6, 6) inertia of hub and undeformed blades at the hub's centre, in the shaft's axes."""
     state = balance(mesh, 0.0, np.zeros(3), ALL_EFFECTS)
-    inertia = component.reduced(mesh, state, 1).M[-6:, -6:]
+    inertia = component.reduced_component(mesh, state, 1).M[-6:, -6:]
     out = turbine.hub.copy()
     for k in range(turbine.blades):
         A = turned_axes(2.0 * np.pi * k / turbine.blades)[0]
@@ -318,10 +318,10 @@ def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple
     for k in range(n):
         turns = turned_axes(psi + 2.0 * np.pi * k / n)
         P = []
-        for order, turn in enumerate(turns):
+        for order, rotation in enumerate(turns):
             part = np.zeros((r + 6, n * r + 6))
             part[:r, : n * r] = np.kron((T @ np.linalg.matrix_power(R, order))[k], np.eye(r))
-            part[r:, n * r :] = turn
+            part[r:, n * r :] = rotation
             P.append(part)
         for total, part in zip(out, in_ground_frame(blade, omega, P), strict=True):
             total += part

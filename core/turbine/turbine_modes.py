@@ -144,16 +144,20 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
         ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], NAMES),
         ("blade", made.turbine.blade, a.blade, a.meshes[1], a.shapes[1], BLADE_NAMES),
     )
-    for part, beam, reduced, mesh, shape, words in parts:
+    for part, beam, component, mesh, shape, words in parts:
         p = a.tower_links if part == "tower" else a.blade_links
-        modes = Modes(0.0, reduced.frequencies, stations.elastic(reduced, mesh, shape, p), mesh.elements)
+        modes = Modes(0.0, component.frequencies, stations.elastic(component, mesh, shape, p), mesh.elements)
         fractions = participation.participation(modes, beam)
         families = [words[int(row.argmax())] for row in fractions]
         seen: dict[str, int] = {}
         group: list[int] = []
-        base = made.base_energy(np.eye(reduced.size, dtype=complex)) if part == "tower" else np.zeros((6, reduced.size))
+        base = (
+            made.base_energy(np.eye(component.size, dtype=complex))
+            if part == "tower"
+            else np.zeros((6, component.size))
+        )
         for k, family in enumerate(families):
-            if base[:, k].sum() > 0.5 * reduced.frequencies[k] ** 2:
+            if base[:, k].sum() > 0.5 * component.frequencies[k] ** 2:
                 group.append(out.index(f"platform {PLATFORM[int(base[:, k].argmax())]}"))
                 continue
             seen[family] = seen.get(family, 0) + 1
@@ -178,8 +182,8 @@ def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, 
     out[:, 0] = yawing
     out[:, 2:8] = base.T
     if a.shaft and np.isfinite(made.turbine.drivetrain.stiffness):
-        turned = vectors[a.shaft[0]] - (vectors[a.shaft[1]] if len(a.shaft) > 1 else 0.0)
-        out[:, 1] = made.turbine.drivetrain.stiffness * np.abs(turned) ** 2
+        shaft_twist = vectors[a.shaft[0]] - (vectors[a.shaft[1]] if len(a.shaft) > 1 else 0.0)
+        out[:, 1] = made.turbine.drivetrain.stiffness * np.abs(shaft_twist) ** 2
     for index, row in enumerate(a.blades):
         weight = _weight(index, len(a.blades))
         np.add.at(out.T, numbers["blade"], weight * a.blade.frequencies[:, None] ** 2 * squared[row])
@@ -213,15 +217,15 @@ def tracked(at: Sequence[TurbineModes]) -> list[NDArray[np.intp]]:
     and exchange their motions, the lines cross, and each keeps its motion and its name, however small the steps are.
     """
     order = [np.arange(len(at[0].frequencies))]
-    for before, after in pairwise(at):
-        last = _assurance(before.shapes[order[-1]], after.shapes)
-        order.append(_paired(last + LIKE_FIRST * _assurance(at[0].shapes, after.shapes)))
+    for previous, following in pairwise(at):
+        last = _assurance(previous.shapes[order[-1]], following.shapes)
+        order.append(_paired(last + LIKE_FIRST * _assurance(at[0].shapes, following.shapes)))
     return order
 
 
-def linked(before: TurbineModes, after: TurbineModes) -> NDArray[np.intp]:
-    """(m,) the mode of ``after`` that continues each mode of ``before``: the pairs with the largest sum of MACs."""
-    return _paired(_assurance(before.shapes, after.shapes))
+def linked(previous: TurbineModes, following: TurbineModes) -> NDArray[np.intp]:
+    """(m,) the mode of ``following`` that continues each mode of ``previous``: the pairs with the largest sum of MACs."""
+    return _paired(_assurance(previous.shapes, following.shapes))
 
 
 def _assurance(x: Complex, y: Complex) -> Array:

@@ -152,7 +152,7 @@ def _beam(beam: Beam, units: Units) -> Beam:
             beams.stiffness * pair / energy,
             rescaled,
             beams.preload * u / energy,
-            beams.inner_preload / internal,
+            beams.internal_preload / internal,
         ),
         damping=beam.damping * pair / (energy * units.time),
         at_a=_pose(beam.at_a, units.length),

@@ -14,7 +14,7 @@ from southwell.core import solve
 from southwell.core.blade import uniform_blade
 from southwell.core.compiled import baseline, kernels  # type: ignore[attr-defined]
 from southwell.core.element.discretize import discretize
-from southwell.core.steady import blade_state as steady
+from southwell.core.steady import blade_state
 from southwell.core.tree import pencil
 
 BLADE = uniform_blade("blade", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
@@ -96,7 +96,7 @@ def test_a_block_has_at_most_eight_vectors() -> None:
 
 def test_empty_batches() -> None:
     assert kernels.exp(np.zeros((0, 6))).shape == (0, 4, 4)
-    assert steady.coordinates(BODY, pencil.undeformed(BODY)).shape == (4, 12)
+    assert blade_state.coordinates(BODY, pencil.undeformed(BODY)).shape == (4, 12)
 
 
 def test_points_that_are_not_sorted_by_element_are_refused() -> None:

@@ -16,8 +16,8 @@ def dense(p: TreePencil, matrix: np.ndarray) -> np.ndarray:
         if a > 0:
             to_element[:6] = beyond[d * (a - 1) : d * (a - 1) + 6]
         out += to_element.T @ matrix[k] @ to_element
-        if p.links.clamped.size:
-            free[d * k : d * k + 6, d * k : d * k + 6] -= p.links.clamped[k]
+        if p.links.clamped_directions.size:
+            free[d * k : d * k + 6, d * k : d * k + 6] -= p.links.clamped_directions[k]
     return free @ out @ free
 
 

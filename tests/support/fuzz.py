@@ -231,7 +231,7 @@ def take(kind: str, path: Path, rng: random.Random) -> None:
             assert np.isfinite(segment.stiffness).all()
             assert segment.inertia[0, 0] > 0
     elif kind == "matrix":
-        assert np.isfinite(matrix_files.read(path).matrix.data).all()
+        assert np.isfinite(matrix_files.read_matrix(path).matrix.data).all()
     elif kind == "results":
         _shown(arguments.finished(path), path.parent)
     elif kind == "history":

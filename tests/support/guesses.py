@@ -21,7 +21,7 @@ CHOSEN = np.unique(
 ).tolist()
 """Numbers of the guesses tried."""
 
-STEADY = equilibrium.steady
+STEADY = equilibrium.steady_state
 
 
 def perturbed(tree: Tree, guess: Mapping[str, float], k: int) -> dict[str, float]:
@@ -77,12 +77,12 @@ def every_steady_state_again():
         linear = about(tree, state, independent)
         if CHOSEN:
             if not by_law[0]:
-                periodic.check(linear)
+                periodic.check_constant(linear)
             assert_same(tree, guesses[0], state, CHOSEN)
         return linear
 
     with pytest.MonkeyPatch.context() as patch:
         patch.setattr(modal, "at_time", frozen)
-        patch.setattr(modal, "steady", steady)
+        patch.setattr(modal, "steady_state", steady)
         patch.setattr(modal, "about", checked)
         yield

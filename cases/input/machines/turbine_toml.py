@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ....core.space import spatial as sp
 from ....core.space.inertia import transformed
-from ....core.turbine.tower import Support, Tower, check
+from ....core.turbine.tower import Support, Tower, check_tower
 from ....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from .. import readers, toml
 from ..errors import CaseError
@@ -218,7 +218,7 @@ def support(path: Path, key: str, given: SupportData, height: float) -> Support:
     mass = None if given.mass is None else in_axes(_six(f"{path}: {key}.mass", given.mass), BEAMDYN)
     out = Support(base, springs, np.array(given.soil) if given.soil else None, mass)
     try:
-        check(height, out)
+        check_tower(height, out)
     except ValueError as error:
         raise CaseError(f"{path}: {key}: {error}") from error
     return out

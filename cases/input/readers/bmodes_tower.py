@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ....core.space import spatial as sp
 from ....core.space.inertia import transformed
-from ....core.turbine.tower import Support, Tower, check
+from ....core.turbine.tower import Support, Tower, check_tower
 from ..errors import CaseError
 from . import bmodes
 from .bmodes import COLUMNS, FACTORS, Named
@@ -93,7 +93,7 @@ def read(path: Path) -> tuple[Tower, Source]:
         notes.append(f"guy wires at {heights}: their horizontal stiffness")
     support = Support(base, wires, _soil(main, named, height))
     try:
-        check(height, support)
+        check_tower(height, support)
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from error
     return Tower(beam, support), Source(NAME, (path, rows.text.path), AXES, tuple(notes), _unused(main, named))

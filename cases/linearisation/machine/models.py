@@ -178,7 +178,7 @@ def _single(models: Models, restricted: Field | None) -> Shapes:
         mesh = discretize(blade, Resolution().blade_elements)
         state = balance(mesh, models.each.omega, np.zeros(3), ALL_EFFECTS)
         if restricted is None:
-            part = component.reduced(mesh, state, Resolution().blade_modes)
+            part = component.reduced_component(mesh, state, Resolution().blade_modes)
         else:
             part = component.restricted(mesh, state, restricted_motions(blade, mesh, restricted))
         r = part.size

@@ -289,7 +289,7 @@ MARKET = "%%MatrixMarket matrix"
 def test_matrices_cut_short_or_of_any_size(tmp_path: Path, text: str, phrase: str) -> None:
     (tmp_path / "K.mtx").write_text(text)
     with pytest.raises(MatrixFileError, match=phrase):
-        matrix_files.read(tmp_path / "K.mtx")
+        matrix_files.read_matrix(tmp_path / "K.mtx")
 
 
 @pytest.mark.parametrize("symmetry", ["general", "symmetric", "skew-symmetric"])
@@ -298,7 +298,7 @@ def test_matrix_market_as_scipy_writes_it(tmp_path: Path, symmetry: str, sparse:
     a = ss.random_array((7, 7), density=0.5, random_state=1).toarray()  # pyright: ignore[reportCallIssue]
     a = {"general": a, "symmetric": a + a.T, "skew-symmetric": a - a.T}[symmetry]
     scipy.io.mmwrite(tmp_path / "a.mtx", ss.coo_array(a) if sparse else a, symmetry=symmetry, precision=17)
-    assert (matrix_files.read(tmp_path / "a.mtx").matrix.toarray() == a).all()
+    assert (matrix_files.read_matrix(tmp_path / "a.mtx").matrix.toarray() == a).all()
 
 
 def test_a_negative_mass_on_the_diagonal(folder: Path) -> None:

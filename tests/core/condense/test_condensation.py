@@ -7,13 +7,13 @@ import pytest
 import scipy.sparse as ss
 
 from southwell.core.condense import ties
-from southwell.core.condense.compressed import chain_modes, mesh_from_segments
+from southwell.core.condense.compressed import mesh_from_segments
 from southwell.core.condense.condensation import condense, segment
 from southwell.core.condense.condensation import segments_in_place as in_place
 from southwell.core.condense.segments import segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.mechanism.description import inertia
-from southwell.core.solve import mesh_modes
+from southwell.core.solve import chain_modes, mesh_modes
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import modal
 from southwell.core.tree.as_mechanism import mechanism

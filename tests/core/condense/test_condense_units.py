@@ -10,10 +10,11 @@ from hypothesis import strategies as st
 
 from southwell.core.blade import uniform_blade
 from southwell.core.condense import ties
-from southwell.core.condense.compressed import chain_modes, mesh_from_segments
+from southwell.core.condense.compressed import mesh_from_segments
 from southwell.core.condense.condensation import segment, segments_in_place
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.element.discretize import discretize
+from southwell.core.solve import chain_modes
 from southwell.core.space import spatial as sp
 
 from ...support.solids import at

@@ -7,13 +7,13 @@ import pytest
 import scipy.sparse as ss
 
 from southwell.core.condense import ties
-from southwell.core.condense.compressed import chain_modes, mesh_from_segments, segment_modes
+from southwell.core.condense.compressed import mesh_from_segments, segment_modes
 from southwell.core.condense.joined import joined
 from southwell.core.condense.segments import Segment, between, segment_from_matrix
 from southwell.core.condense.ties import CondensationError, FiniteElements
 from southwell.core.element import sections
 from southwell.core.mechanism.description import inertia
-from southwell.core.solve import LargeStrainError, mesh_modes, modes
+from southwell.core.solve import LargeStrainError, chain_modes, mesh_modes, modes
 from southwell.core.space import spatial as sp
 from southwell.tests.support.beams import PARK
 from southwell.tests.support.solids import at

@@ -83,7 +83,7 @@ def test_pencil_stiffness_is_the_derivative_of_the_residual(measure, mass) -> No
     b = a @ beams.undeformed @ sp.exp(small)
     frame, fall = np.array([0.3, -0.2, 5.0, 0.4, -0.3, 1.2]), np.array([1.0, 2.0, -9.0, 0, 0, 0])
 
-    inner = 0.3 * rng.normal(size=(4, beams.inner))
+    inner = 0.3 * rng.normal(size=(4, beams.internal_count))
 
     def pencil(a: np.ndarray, b: np.ndarray, inner: np.ndarray) -> bm.Pencil:
         to_a = sp.adjoint(sp.inverse(a))
@@ -96,7 +96,7 @@ def test_pencil_stiffness_is_the_derivative_of_the_residual(measure, mass) -> No
         r[:, 6:12] = (np.swapaxes(sp.adjoint(sp.inverse(a_) @ b_), -1, -2) @ r[:, 6:12, None])[..., 0]
         return r
 
-    d = 12 + beams.inner
+    d = 12 + beams.internal_count
     to_a = np.zeros((4, d, d))
     to_a[:, range(d), range(d)] = 1.0
     to_a[:, 6:12, 6:12] = sp.adjoint(sp.inverse(a) @ b)

@@ -112,7 +112,7 @@ def test_a_well_rounded_corner_is_nearly_the_kink() -> None:
 
 
 def test_sections_turn_with_the_tangent_at_the_kink() -> None:
-    before, beyond = (frames(kinked(), np.array([8.0]), before=b)[0] for b in (True, False))
+    before, beyond = (frames(kinked(), np.array([8.0]), root_side=b)[0] for b in (True, False))
     np.testing.assert_allclose(before[:3, :3], np.eye(3), atol=1e-15)
     np.testing.assert_allclose(beyond[:3, 0], [np.cos(ANGLE), -np.sin(ANGLE), 0], atol=1e-15)
     np.testing.assert_allclose(before[:3, 3], beyond[:3, 3], atol=1e-15)
@@ -121,7 +121,7 @@ def test_sections_turn_with_the_tangent_at_the_kink() -> None:
 @pytest.mark.parametrize("off", [-5e-12, 5e-12])
 def test_an_arc_length_within_rounding_of_a_kink_is_the_kink(off: float) -> None:
     before, beyond = (
-        curve.at(kinked().stations, kinked().curve, (8.0,), np.array([8.0 + off]), before=b)[1][0]
+        curve.at(kinked().stations, kinked().curve, (8.0,), np.array([8.0 + off]), root_side=b)[1][0]
         for b in (True, False)
     )
     np.testing.assert_allclose(before, [1.0, 0.0, 0.0], atol=1e-15)

@@ -11,7 +11,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import reading
 from southwell.core.blade import Blade, BladeError, section_mass, without_rotary_inertia
 from southwell.core.blade_checks import body_fault
-from southwell.core.mechanism.description import MechanismError, check, inertia
+from southwell.core.mechanism.description import MechanismError, check_mechanism, inertia
 from southwell.core.solve import mesh_modes
 
 from ...support.beams import PARK, curved
@@ -152,4 +152,4 @@ def test_impossible_bodies_of_a_mechanism_are_refused() -> None:
         (inertia(1.0, 0.0, (1.0, 0, 0)) * np.where(np.arange(6) < 3, 1, 0.5), "symmetric"),
     ):
         with pytest.raises(MechanismError, match=f"body 'b': .*{match}"):
-            check(mb.Mechanism((mb.Body("b", matrix),), (mb.Joint("j", "revolute", "ground", "b"),)))
+            check_mechanism(mb.Mechanism((mb.Body("b", matrix),), (mb.Joint("j", "revolute", "ground", "b"),)))

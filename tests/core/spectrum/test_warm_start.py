@@ -16,8 +16,7 @@ from southwell.core.spectrum import mesh_solver as solution
 from southwell.core.spectrum.completeness import MissedModesError
 from southwell.core.spectrum.mesh_solver import Options, Solved
 from southwell.core.spectrum.mesh_solver import solve as solve_mesh
-from southwell.core.steady import blade_state as steady
-from southwell.core.steady import extrapolation
+from southwell.core.steady import blade_state, extrapolation
 from southwell.core.steady.blade_state import Steady
 
 FLAT = uniform_blade("flat", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=4e6, mass=10.0, I_y=0.1, I_z=0.3)
@@ -27,13 +26,13 @@ ROUND = uniform_blade("round", 10.0, 1.0, EA=1e9, GJ=1e6, EI_y=1e6, EI_z=1e6, ma
 @pytest.fixture
 def linearised(monkeypatch: pytest.MonkeyPatch) -> list[float]:
     """The speed (rad/s) of every linearisation of Newton's method, as they come."""
-    speeds, linearize = [], steady.linearize
+    speeds, linearize = [], blade_state.linearize
 
     def noted(mesh, shape, omega, gravity):
         speeds.append(omega)
         return linearize(mesh, shape, omega, gravity)
 
-    monkeypatch.setattr(steady, "linearize", noted)
+    monkeypatch.setattr(blade_state, "linearize", noted)
     return speeds
 
 
@@ -112,7 +111,7 @@ def test_modes_that_the_start_does_not_contain_are_reported_and_computed(lumped:
 @pytest.mark.numerical
 def test_the_count_alone_reports_them(lumped: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     right = solve_mesh(lumped, 0.0, Options(6))
-    monkeypatch.setattr(completeness, "check", lambda *_: None)
+    monkeypatch.setattr(completeness, "check_complete", lambda *_: None)
     wrong = solve_mesh(lumped, 0.0, Options(6), replace(right.start, basis=only_flap(lumped)))
     assert np.abs(wrong.modes.frequencies / right.modes.frequencies - 1.0).max() > 0.1
 
@@ -130,8 +129,8 @@ def test_a_settled_steady_state_is_as_accurate_as_a_stalled_one(
     def stalled(energy: float, before: float, rounding: float) -> bool:
         return energy <= 10.0 * rounding and energy > 1e-2 * before
 
-    for settled in (steady._converged, stalled):
-        monkeypatch.setattr(steady, "_converged", settled)
+    for settled in (blade_state._converged, stalled):
+        monkeypatch.setattr(blade_state, "_converged", settled)
         linearised.clear()
         solved = list(solved_in_turn(mesh, speeds, options))
         counts.append(len(linearised))
@@ -162,7 +161,7 @@ def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> Non
 def test_a_known_speed_is_not_extrapolated() -> None:
     mesh = discretize(replace(FLAT, precone=0.2), 20)  # its shape is no polynomial in Ω²
     *_, last = solved_in_turn(mesh, (1.0, 20.0, 30.0, 5.0, 9.0), Options(6))
-    again = steady.extrapolate(mesh, last.start.coordinates, -9.0)
+    again = blade_state.extrapolate(mesh, last.start.coordinates, -9.0)
     assert again is not None
     np.testing.assert_allclose(again.relative, last.state.shape.relative, rtol=0, atol=1e-14)
 

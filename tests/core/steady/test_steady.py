@@ -10,7 +10,7 @@ from southwell.core import solve
 from southwell.core.blade import Blade, uniform_blade
 from southwell.core.element.discretize import discretize
 from southwell.core.spectrum.lanczos import lanczos
-from southwell.core.steady import blade_state as steady
+from southwell.core.steady import blade_state
 from southwell.core.steady.blade_state import LargeStrainError
 from southwell.references.joint_chains import drake as drake_chain
 from southwell.references.joint_chains import mujoco as mujoco_chain
@@ -34,8 +34,8 @@ def test_rigid_stretch_does_not_scatter() -> None:
 @pytest.mark.parametrize("omega", [1e-3, SLOW, 1.5])
 def test_another_newton_step_changes_nothing(omega: float, how: dict[str, Any]) -> None:
     body = discretize(CONED, 50, **how)
-    once = steady.steady(body, omega, np.zeros(3))
-    again = steady.steady(body, omega, np.zeros(3), once.shape)
+    once = blade_state.steady_state(body, omega, np.zeros(3))
+    again = blade_state.steady_state(body, omega, np.zeros(3), once.shape)
     f, g = (lanczos(s.pencil, 4).frequencies for s in (once, again))
     np.testing.assert_allclose(f, g, rtol=1e-9)
 

@@ -26,14 +26,14 @@ def test_many_guesses_reach_one_state(name: str) -> None:
     mechanism, guess = CASES[name]()
     tree = compile_tree(at_time(mechanism, 0.0))
     chosen = guesses.CHOSEN if len(guesses.CHOSEN) > 10 else list(range(9, guesses.GUESSES, 20))
-    guesses.assert_same(tree, guess, equilibrium.steady(tree, guess), chosen)
+    guesses.assert_same(tree, guess, equilibrium.steady_state(tree, guess), chosen)
 
 
 def test_another_state_is_detected() -> None:
     """A pendulum that hangs to one side, and one that stands on its head."""
     mechanism, guess = CASES["pendulum, conical"]()
     tree = compile_tree(at_time(mechanism, 0.0))
-    state = equilibrium.steady(tree, guess)
+    state = equilibrium.steady_state(tree, guess)
     with pytest.raises(AssertionError, match="another state"):
         guesses.assert_same(tree, {"swing.rz": math.pi}, state, [100])
 
@@ -60,4 +60,4 @@ def test_without_a_state_near_the_guess_the_one_elsewhere_is_named(monkeypatch: 
     with pytest.raises(
         mb.MechanismError, match=r"reached 25 % .* a steady state was found at of other.rz = 0, of one.rz = 0: give a"
     ):
-        equilibrium.steady(tree, {"of one.rz": 1.2, "of other.rz": math.pi})
+        equilibrium.steady_state(tree, {"of one.rz": 1.2, "of other.rz": math.pi})

@@ -18,7 +18,7 @@ from southwell.core.mechanism.joints import Joint
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum.eigen import Eigen
 from southwell.core.spectrum.modal import linearize, modes
-from southwell.core.steady import blade_state as steady
+from southwell.core.steady import blade_state
 from southwell.core.tree import as_mechanism
 from southwell.tests.support.beams import PARK, curved, tapered
 from southwell.tests.support.dense import dense
@@ -93,7 +93,7 @@ def test_a_root_on_many_springs_is_that_of_the_mechanism() -> None:
 def test_the_stiffness_on_two_hinges_that_have_turned_is_symmetric() -> None:
     """Flap and lag do not commute: without the geometric stiffness of the reaction, K of the chain is not symmetric."""
     body = discretize(replace(curved(), root=np.array(ROOTS["both hinges"])), 4)
-    state = steady.steady(body, 2.5, np.array([3.0, 5.0, -9.81]))
+    state = blade_state.steady_state(body, 2.5, np.array([3.0, 5.0, -9.81]))
     K = dense(state.pencil, state.pencil.K)
     assert np.abs(K - K.T).max() < 1e-9 * np.abs(K[:12, :12]).max()
     turned = sp.inverse(state.shape.nodes[0]) @ state.shape.nodes[1]

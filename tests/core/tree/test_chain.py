@@ -11,7 +11,7 @@ from southwell.core.solve import chain_modes, mesh_modes, modes, sweep
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import eigen, modal
 from southwell.core.spectrum.mesh_solver import balance
-from southwell.core.steady import blade_state as steady
+from southwell.core.steady import blade_state
 from southwell.core.tree.as_mechanism import mechanism
 from southwell.tests.support.beams import EXACT_EDGEWISE, EXACT_FLAPWISE, PARK, curved, tapered, yoo_shin
 from southwell.tests.support.dense import dense as dense_of
@@ -121,7 +121,7 @@ def test_many_modes_of_a_chain_with_massless_rotations(count) -> None:
 def test_stages_agree_between_the_paths() -> None:
     """M*, C*, K* are the Cartesian pencil projected by B, with twists in the bodies' axes."""
     body, n = discretize(curved(), 5), 5
-    state = steady.steady(body, 1.5, np.zeros(3))
+    state = blade_state.steady_state(body, 1.5, np.zeros(3))
     shape, cartesian = state.shape, state.pencil
     dense = modal.linearize(mechanism(body, 1.5))
     k = dense.state.kinematics
@@ -173,7 +173,7 @@ def test_no_steady_state_beyond_the_axial_critical_speed() -> None:
     """EA u″ + μ Ω² (x + u) = 0 has no bounded solution past Ω L √(μ/EA) = π/2: here γ = 35 π = 109.96."""
     modes(yoo_shin(0.0), 109.0, 20, 2, allow_large_strain=True)
     with pytest.raises(
-        (steady.SteadyStateError, eigen.UnstableError), match=r"no steady state at 112 rad/s.*lower the loads"
+        (blade_state.SteadyStateError, eigen.UnstableError), match=r"no steady state at 112 rad/s.*lower the loads"
     ):
         mesh_modes(yoo_shin(0.0), 112.0, 20, 2)
 
@@ -200,7 +200,7 @@ def test_unprestressed_chain_needs_no_newton() -> None:
     body = discretize(PARK, 4)
     state = balance(body, 10.0, np.zeros(3), Effects(prestretch=False))
     np.testing.assert_array_equal(state.shape.nodes, body.nodes)
-    tension = steady.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
+    tension = blade_state.prestress_at_rest(body, 10.0, np.zeros(3)).beams.preload.max()
     assert np.abs(state.pencil.residual).max() < 1e-8 * tension
 
 
@@ -216,9 +216,9 @@ def test_bad_arguments_are_named(arguments, match) -> None:
 def test_a_shape_carried_over_to_a_finer_mesh_is_a_close_guess() -> None:
     """Within 1 % of the displacement; at nodes that the meshes share, it is the same."""
     coarse, fine = (discretize(curved(), n) for n in (8, 16))
-    elsewhere = steady.steady(coarse, 4.0, np.zeros(3)).shape
-    guess = steady.carried_over(coarse, elsewhere, fine)
-    result = steady.steady(fine, 4.0, np.zeros(3)).shape
+    elsewhere = blade_state.steady_state(coarse, 4.0, np.zeros(3)).shape
+    guess = blade_state.carried_over(coarse, elsewhere, fine)
+    result = blade_state.steady_state(fine, 4.0, np.zeros(3)).shape
     moved = np.abs(result.nodes - fine.nodes).max()
     assert np.abs(guess.nodes - result.nodes).max() < 0.01 * moved
     np.testing.assert_allclose(guess.nodes[::2], elsewhere.nodes, atol=1e-12)

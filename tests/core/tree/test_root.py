@@ -9,7 +9,7 @@ from southwell.core.blade import Blade, BladeError, uniform_blade, without_rotar
 from southwell.core.element.discretize import discretize
 from southwell.core.solve import mesh_modes, modes
 from southwell.core.spectrum.eigen import UnstableError
-from southwell.core.steady import blade_state as steady
+from southwell.core.steady import blade_state
 from southwell.references.protocol import registry
 from southwell.tests.support.beams import PARK, tapered
 from southwell.tests.support.codes import BLADE_CODES
@@ -117,7 +117,7 @@ def test_tip_deflection_under_a_uniform_load() -> None:
     """q L⁴ / 8 EI for a small load."""
     q = 1e-3
     body = discretize(PARK, 8, load=np.array(2 * [[0.0, 0.0, q]]))
-    tip = steady.steady(body, 0.0, np.zeros(3)).shape.nodes[-1, 2, 3]
+    tip = blade_state.steady_state(body, 0.0, np.zeros(3)).shape.nodes[-1, 2, 3]
     assert tip == pytest.approx(q * PARK.length**4 / (8 * PARK.stiffness[0, 4, 4]), rel=1e-8)
 
 

@@ -48,7 +48,7 @@ def test_a_guess_that_folds_a_beam_is_refused_and_the_state_named() -> None:
     step = sp.log(sp.inverse(ARC.law.undeformed[0]) @ folded())
     guess = {f"j4.{name}": float(v) for name, v in zip(("x", "y", "z", "rx", "ry", "rz"), step, strict=True)}
     with pytest.raises(mb.MechanismError, match=r"without a guess, a steady state was found at j4.x = "):
-        equilibrium.steady(tree, guess)
+        equilibrium.steady_state(tree, guess)
 
 
 def test_a_beam_that_is_held_folded_is_refused() -> None:

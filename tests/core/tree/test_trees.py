@@ -7,7 +7,7 @@ import pytest
 
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.effects import ALL_EFFECTS
-from southwell.core.element.branches import CLAMPED, around_hub, attached, hub
+from southwell.core.element.branches import CLAMPED, attached, hub
 from southwell.core.element.discretize import discretize
 from southwell.core.element.mesh import Mesh
 from southwell.core.mechanism.description import inertia
@@ -20,6 +20,15 @@ from southwell.core.spectrum.modal import linearize, modes
 from southwell.core.steady.blade_state import Steady
 from southwell.core.tree.as_mechanism import mechanism
 from southwell.tests.support.dense import dense
+
+
+def around_hub(blade: Mesh, count: int) -> Mesh:
+    """A rotor of ``count`` equal blades, clamped at equal angles to a hub that rotates about z."""
+    rotor = hub(blade, np.eye(4))
+    for k in range(count):
+        azimuth = sp.pose(sp.rotation(2, np.array(2.0 * np.pi * k / count)), np.zeros(3))
+        rotor = attached(rotor, 0, blade, azimuth @ blade.nodes[0])
+    return rotor
 
 
 def blade(seed: int = 1, **changes) -> Blade:

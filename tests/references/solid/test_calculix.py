@@ -4,12 +4,12 @@ import numpy as np
 import pytest
 
 from southwell.core.condense import exported, ties
-from southwell.core.condense.compressed import chain_modes, mesh_from_segments
+from southwell.core.condense.compressed import mesh_from_segments
 from southwell.core.condense.condensation import condense, segment
-from southwell.core.condense.matrix_files import read, stored
+from southwell.core.condense.matrix_files import read_matrix, stored
 from southwell.core.condense.segments import between
 from southwell.core.effects import Effects
-from southwell.core.solve import mesh_modes
+from southwell.core.solve import chain_modes, mesh_modes
 from southwell.references.protocol.interface import CodeError
 from southwell.references.solid import calculix, hexahedra
 from southwell.references.solid.mesh import clamped_section, straight_bricks
@@ -124,7 +124,7 @@ def test_its_substructure_is_rejected() -> None:
     lines += ["*SUBSTRUCTURE GENERATE", "*RETAINED NODAL DOFS,SORTED=NO", "ENDS,1,3"]
     lines += ["*SUBSTRUCTURE MATRIX OUTPUT,STIFFNESS=YES,OUTPUT FILE=USER DEFINED,FILE NAME=blade", "*END STEP"]
     with calculix.run(lines) as folder:
-        model = exported.model(read(folder / "blade.mtx"), {int(k) + 1: nodes[k] for k in ends})
+        model = exported.model(read_matrix(folder / "blade.mtx"), {int(k) + 1: nodes[k] for k in ends})
     assert len(model.directions) == 3 * len(ends)
     tied = [tie(model, x, section_weights(bricks, layer)) for x, layer in ((0.0, 0), (length, 4))]
     k = condense(model, tied).stiffness

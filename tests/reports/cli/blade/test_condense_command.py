@@ -10,7 +10,8 @@ import scipy.sparse as ss
 from southwell.cases.condense import condensed, condensing
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.results import Run
-from southwell.core.condense.compressed import chain_modes, mesh_from_segments
+from southwell.core.condense.compressed import mesh_from_segments
+from southwell.core.solve import chain_modes
 from southwell.references.solid import calculix, hexahedra
 from southwell.references.solid.mesh import Bricks, clamped_section, straight_bricks
 from southwell.reports.cli import app as cli
