@@ -112,7 +112,7 @@ def _add_tree(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, lis
 
     Exudyn's joints are along positive axes; the rotation of a link aligns one of them with its screw.
     """
-    items, n = exu.itemInterface, len(velocity)
+    n = len(velocity)
     kinds, rotations, steps = [], [], []
     for j in range(n):
         axis = int(np.abs(tree.screw[j]).argmax())
@@ -121,7 +121,7 @@ def _add_tree(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, lis
             flip = sp.pose(sp.rotation((axis + 1) % 3, np.array(np.pi)), np.zeros(3))
         parent = tree.parent[j]
         start = sp.inverse(rotations[parent]) if parent >= 0 else np.eye(4)
-        kinds.append(getattr(exu.JointType, ("Prismatic" if axis < 3 else "Revolute") + "XYZ"[axis % 3]))
+        kinds.append(("Prismatic" if axis < 3 else "Revolute") + "XYZ"[axis % 3])
         steps.append(start @ tree.fixed[j] @ flip)
         rotations.append(flip)
     inertia = np.zeros((n, 6, 6))
@@ -136,31 +136,19 @@ def _add_tree(exu: Any, mbs: Any, tree: Tree, velocity: Array) -> tuple[Any, lis
         load = spring[j] * neutral[j] + s.stiffness * s.neutral
         spring[j], damper[j] = spring[j] + s.stiffness, damper[j] + s.damping
         neutral[j] = load / spring[j] if spring[j] else 0.0
-    node = mbs.AddNode(
-        items.NodeGenericODE2(
-            numberOfODE2Coordinates=n,
-            referenceCoordinates=np.zeros(n),
-            initialCoordinates=np.zeros(n),
-            initialCoordinates_t=velocity,
-        )
+    links = ex.Links(
+        kinds,
+        tree.parent[:n],
+        np.array([x[:3, :3] for x in steps]).reshape(n, 3, 3),
+        np.array([x[:3, 3] for x in steps]).reshape(n, 3),
+        mass,
+        centre,
+        moments,
+        spring,
+        damper,
+        neutral,
     )
-    item = mbs.AddObject(
-        items.ObjectKinematicTree(
-            nodeNumber=node,
-            gravity=list(tree.mechanism.gravity),
-            jointTypes=kinds,
-            linkParents=tree.parent[:n],
-            jointTransformations=exu.Matrix3DList([x[:3, :3] for x in steps]),
-            jointOffsets=exu.Vector3DList([x[:3, 3] for x in steps]),
-            linkMasses=mass,
-            linkCOMs=exu.Vector3DList(list(centre)),
-            linkInertiasCOM=exu.Matrix3DList(list(moments)),
-            jointPControlVector=spring,
-            jointDControlVector=damper,
-            jointPositionOffsetVector=neutral,
-            jointVelocityOffsetVector=np.zeros(n),
-        )
-    )
+    _, item = ex.add_tree(exu, mbs, links, np.zeros(n), velocity, tree.mechanism.gravity)
     return item, rotations
 
 

@@ -6,7 +6,9 @@ Exudyn: J. Gerstmayr, "Exudyn – a C++-based Python package for flexible multib
 
 import io
 import sys
+from collections.abc import Sequence
 from contextlib import redirect_stdout
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -35,6 +37,63 @@ def system() -> tuple[Any, Any, Any]:
     exudyn.config.printToConsole = False
     container = exudyn.SystemContainer()
     return exudyn, container, container.AddSystem()
+
+
+@dataclass(frozen=True)
+class Links:
+    """Links of a kinematic tree, one joint each.
+
+    Attributes:
+        joints: (n) names of Exudyn's kinds of joint.
+        parents: (n,) indices; −1 is the ground.
+        axes, offset: (n, 3, 3), (n, 3) m, of each joint in its parent.
+        mass, centre, moments: (n,) kg, (n, 3) m, (n, 3, 3) kg m² about the centre.
+        springs, dampers, neutral: (n,) of the joints; none where they are None.
+    """
+
+    joints: Sequence[str]
+    parents: NDArray[np.intp]
+    axes: Array
+    offset: Array
+    mass: Array
+    centre: Array
+    moments: Array
+    springs: Array | None = None
+    dampers: Array | None = None
+    neutral: Array | None = None
+
+
+def add_tree(
+    exu: Any, mbs: Any, links: Links, q: Array, rates: Array, gravity: Sequence[float] = (0.0, 0.0, 0.0)
+) -> tuple[Any, Any]:
+    """Add a kinematic tree with initial coordinates and rates (n,); return its node and its object."""
+    items, zero = exu.itemInterface, np.zeros(len(q))
+    node = mbs.AddNode(
+        items.NodeGenericODE2(
+            numberOfODE2Coordinates=len(q),
+            referenceCoordinates=zero,
+            initialCoordinates=q,
+            initialCoordinates_t=rates,
+        )
+    )
+    item = mbs.AddObject(
+        items.ObjectKinematicTree(
+            nodeNumber=node,
+            gravity=list(gravity),
+            jointTypes=[getattr(exu.JointType, joint) for joint in links.joints],
+            linkParents=links.parents,
+            jointTransformations=exu.Matrix3DList(list(links.axes)),
+            jointOffsets=exu.Vector3DList(list(links.offset)),
+            linkMasses=links.mass,
+            linkCOMs=exu.Vector3DList(list(links.centre)),
+            linkInertiasCOM=exu.Matrix3DList(list(links.moments)),
+            jointPControlVector=zero if links.springs is None else links.springs,
+            jointDControlVector=zero if links.dampers is None else links.dampers,
+            jointPositionOffsetVector=zero if links.neutral is None else links.neutral,
+            jointVelocityOffsetVector=zero,
+        )
+    )
+    return node, item
 
 
 def hold(exu: Any, mbs: Any, node: int, coordinates: list[int]) -> None:

@@ -97,33 +97,19 @@ def _system(tree: HingedSegments, omega: float, hub: tuple[int, ...]) -> tuple[A
     mass, centre, inertia = np.zeros(n), np.zeros((n, 3)), np.zeros((n, 3, 3))
     carrier = tree.segment + first
     mass[carrier], centre[carrier], inertia[carrier] = tree.mass, tree.centre, tree.inertia
-    zero = np.zeros(n)
-    rates = zero.copy()
+    rates = np.zeros(n)
     rates[first - 1] = omega
-    node = mbs.AddNode(
-        items.NodeGenericODE2(
-            numberOfODE2Coordinates=n,
-            referenceCoordinates=zero,
-            initialCoordinates=zero,
-            initialCoordinates_t=rates,
-        )
+    links = ex.Links(
+        joints=[JOINT[strain] for strain in (*hub, *tree.strain)],
+        parents=np.arange(-1, n - 1),
+        axes=np.concatenate([np.tile(np.eye(3), (first, 1, 1)), tree.rotation]),
+        offset=np.concatenate([np.zeros((first, 3)), tree.offset]),
+        mass=mass,
+        centre=centre,
+        moments=inertia,
+        springs=np.concatenate([np.zeros(first), tree.stiffness]),
     )
-    mbs.AddObject(
-        items.ObjectKinematicTree(
-            nodeNumber=node,
-            jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in (*hub, *tree.strain)],
-            linkParents=np.arange(-1, n - 1),
-            jointTransformations=exu.Matrix3DList([*[np.eye(3)] * first, *tree.rotation]),
-            jointOffsets=exu.Vector3DList([*[np.zeros(3)] * first, *tree.offset]),
-            linkMasses=mass,
-            linkCOMs=exu.Vector3DList(list(centre)),
-            linkInertiasCOM=exu.Matrix3DList(list(inertia)),
-            jointPControlVector=np.concatenate([np.zeros(first), tree.stiffness]),
-            jointDControlVector=zero,
-            jointPositionOffsetVector=zero,
-            jointVelocityOffsetVector=zero,
-        )
-    )
+    node, _ = ex.add_tree(exu, mbs, links, np.zeros(n), rates)
     if tree.coupling.nnz:
         coupling = ex.sparse_matrix(exu, sparse.block_diag([np.zeros((first, first)), tree.coupling]))
         mbs.AddObject(items.ObjectGenericODE2(nodeNumbers=[node], stiffnessMatrix=coupling))

@@ -120,35 +120,18 @@ def chain(blade: Blade, segments: HingedSegments) -> Chain:
 def _linearized(tree: TurbineTree, q: Array, omega: float, psi: float) -> tuple[Array, Array, Array]:
     """Exudyn's M, C, K (n, n) at an azimuth, with the springs of all joints."""
     exu, _container, mbs = ex.system()
-    items, n = exu.itemInterface, len(q)
-    rates = np.zeros(n)
-    at = q.copy()
-    rates[tree.spin], at[tree.spin] = omega, psi
-    node = mbs.AddNode(
-        items.NodeGenericODE2(
-            numberOfODE2Coordinates=n,
-            referenceCoordinates=np.zeros(n),
-            initialCoordinates=at,
-            initialCoordinates_t=rates,
-        )
+    at, rates = q.copy(), np.zeros(len(q))
+    at[tree.spin], rates[tree.spin] = psi, omega
+    links = ex.Links(
+        joints=[JOINT[strain] for strain in tree.strain],
+        parents=tree.parent,
+        axes=tree.axes,
+        offset=tree.offset,
+        mass=np.array([body.mass for body in tree.bodies]),
+        centre=np.array([body.centre for body in tree.bodies]),
+        moments=np.array([body.moments for body in tree.bodies]),
     )
-    zero = np.zeros(n)
-    mbs.AddObject(
-        items.ObjectKinematicTree(
-            nodeNumber=node,
-            jointTypes=[getattr(exu.JointType, JOINT[strain]) for strain in tree.strain],
-            linkParents=tree.parent,
-            jointTransformations=exu.Matrix3DList(list(tree.axes)),
-            jointOffsets=exu.Vector3DList(list(tree.offset)),
-            linkMasses=[body.mass for body in tree.bodies],
-            linkCOMs=exu.Vector3DList([body.centre for body in tree.bodies]),
-            linkInertiasCOM=exu.Matrix3DList([body.moments for body in tree.bodies]),
-            jointPControlVector=zero,
-            jointDControlVector=zero,
-            jointPositionOffsetVector=zero,
-            jointVelocityOffsetVector=zero,
-        )
-    )
+    ex.add_tree(exu, mbs, links, at, rates)
     mbs.Assemble()
     M, C, K = ex.linearized(exu, mbs, still=not omega, full=True)
     return M, C, K + tree.stiffness
