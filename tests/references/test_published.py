@@ -27,9 +27,9 @@ DATA = [
     for series in published.load(name).series
     for datum in series.data
 ]
-EXACT = [found for found in DATA if not found[1].target]
-COARSE = [found for found in DATA if found[1].target and found[1].blade]  # those of decks: test_deck_tables
-SUSPECTS = [found for found in DATA if found[2].suspect]
+EXACT = [entry for entry in DATA if not entry[1].target]
+COARSE = [entry for entry in DATA if entry[1].target and entry[1].blade]  # those of decks: test_deck_tables
+SUSPECTS = [entry for entry in DATA if entry[2].suspect]
 
 
 def ids(value: str | Series | Datum) -> str:
@@ -73,8 +73,8 @@ def test_a_datum_of_a_coarse_method_is_within_its_target(name: str, series: Seri
     case, _, _ = series.blade.partition("/")
     blade = next(v.blade for v in library.load(case).variants if v.name == series.blade)
     unit, speed = UNITS[published.load(name).unit]
-    found = mesh_modes(blade, datum.speed * speed, 120, 8, effects=series.effects)
-    value = family(found, COLUMN[datum.family])[datum.mode - 1] / unit
+    solution = mesh_modes(blade, datum.speed * speed, 120, 8, effects=series.effects)
+    value = family(solution, COLUMN[datum.family])[datum.mode - 1] / unit
     assert abs(datum.value / value - 1.0) < (series.target or 0.0)
 
 
@@ -94,17 +94,17 @@ def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Dat
 def test_core_prints_what_hodges_and_rutkowski_print() -> None:
     """Core is independent of the code that checks the digits; to one unit of the last digit, with 1601 stations."""
     (series,) = published.load("hodges_rutkowski1981").series
-    found = mesh_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
+    solution = mesh_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
     printed = [datum.value for datum in series.data if datum.speed == 12]
-    np.testing.assert_allclose(family(found, Z)[:3], printed, rtol=0, atol=1e-4)
+    np.testing.assert_allclose(family(solution, Z)[:3], printed, rtol=0, atol=1e-4)
 
 
 @pytest.mark.parametrize(("height", "breadth"), [(0.8, 0.8), (0.0, 0.8)])
 def test_core_and_the_series_agree_on_double_tapers(height: float, breadth: float) -> None:
     """Including the value misprinted as 38.4920."""
     effects = Effects(prestretch=False, coriolis=False, rotary_inertia=False)
-    found = family(mesh_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, effects=effects), Z)[:3]
-    np.testing.assert_allclose(found, tapered_beams.exact(height, breadth, 0.0)[:3], rtol=2e-6)
+    result = family(mesh_modes(tapered_beams.blade(height, breadth), 0.0, 50, 8, effects=effects), Z)[:3]
+    np.testing.assert_allclose(result, tapered_beams.exact(height, breadth, 0.0)[:3], rtol=2e-6)
 
 
 def test_the_yoo_shin_digits_are_truncated() -> None:

@@ -25,7 +25,7 @@ _SESSION = re.compile(r"(?<=```text\n)\$ southwell judge ([^\n]*)\n.*?(?=```)", 
 _TABLE = re.compile(r"(?<=\| planted \| named \| finding \|\n\|:--\|:--\|:--\|\n)(?:\|[^\n]*\n)+")
 
 
-def found(lins: Sequence[Lin]) -> tuple[Finding, ...]:
+def findings_of(lins: Sequence[Lin]) -> tuple[Finding, ...]:
     """The findings about a set."""
     files = [parsed(Path(f"case.{k + 1}.lin"), lin.text()) for k, lin in enumerate(lins)]
     return judge_set(azimuth_set("case", files)).findings
@@ -61,7 +61,7 @@ def session(words: str, folder: Path) -> str:
 
 def written(text: str, folder: Path) -> str:
     """The page with its table and sessions written anew."""
-    table = "".join(row(defect, found(defect.plant())) for defect in DEFECTS)
+    table = "".join(row(defect, findings_of(defect.plant())) for defect in DEFECTS)
     text = _TABLE.sub(lambda _: table, text)
     return _SESSION.sub(lambda block: session(block[1], folder), text)
 

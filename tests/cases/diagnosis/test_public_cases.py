@@ -47,8 +47,8 @@ def mbwind() -> Blade:
     return Blade("mbwind", 61.5 * s, stiffness, section_mass(mass), np.radians(twist), hub_radius=1.5)
 
 
-def first_names(found: Diagnosis) -> list[str]:
-    return [name for name, _ in found.causes[0].changes]
+def first_names(diagnosis: Diagnosis) -> list[str]:
+    return [name for name, _ in diagnosis.causes[0].changes]
 
 
 def test_mbwind_is_named_as_a_truncated_modal_basis() -> None:

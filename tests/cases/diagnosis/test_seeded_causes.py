@@ -104,8 +104,8 @@ def numbers(problem: Problem, seed: Seed) -> np.ndarray:
     return np.array([modes.frequencies for modes in answers])
 
 
-def is_first(found: Diagnosis, name: str) -> bool:
-    return found.cause is not None and found.cause.changes[0][0] == name and len(found.cause.changes) == 1
+def is_first(diagnosis: Diagnosis, name: str) -> bool:
+    return diagnosis.cause is not None and diagnosis.cause.changes[0][0] == name and len(diagnosis.cause.changes) == 1
 
 
 @pytest.mark.slow

@@ -7,12 +7,12 @@ import pytest
 from southwell.cases.linearisation.findings import DEFECT, LIMIT
 from southwell.tests.support.linearised_defects import DEFECTS, HEALTHY, Defect, healthy
 from southwell.tests.support.linearised_machines import Lin, without
-from southwell.tests.support.linearised_page import PAGE, found, row
+from southwell.tests.support.linearised_page import PAGE, findings_of, row
 
 
 def findings(lins: Sequence[Lin]) -> dict[str, str]:
     """Level of each finding by name."""
-    return {finding.name: finding.level for finding in found(lins)}
+    return {finding.name: finding.level for finding in findings_of(lins)}
 
 
 @pytest.mark.parametrize("name", HEALTHY)
@@ -22,7 +22,7 @@ def test_a_healthy_set_has_no_finding(name: str) -> None:
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda defect: defect.title)
 def test_a_planted_defect_is_found_by_its_name_alone(defect: Defect) -> None:
-    own = found(defect.plant())
+    own = findings_of(defect.plant())
     assert set(defect.names) & {finding.name for finding in own}
     assert {finding.name for finding in own if finding.level == DEFECT} <= set(defect.names)
     assert row(defect, own) in PAGE.read_text(encoding="utf-8")

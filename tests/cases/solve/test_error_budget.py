@@ -31,13 +31,13 @@ CASE = "park-cantilever"
 
 
 @cache
-def found() -> dict[tuple[str, str], float | None]:
+def changes() -> dict[tuple[str, str], float | None]:
     case = library.load(CASE)
     return {(s.part, s.mode): s.change for s in error_budget.solve(case, case.variants[0])}
 
 
 def share(part: str, mode: str) -> float:
-    (change,) = (v for (p, m), v in found().items() if p.startswith(part) and m == mode)
+    (change,) = (v for (p, m), v in changes().items() if p.startswith(part) and m == mode)
     assert change is not None
     return change
 

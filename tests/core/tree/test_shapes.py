@@ -35,34 +35,34 @@ BEAM = uniform_blade("beam", 6.0, 0.3, EA=1e8, GJ=1e5, EI_y=1e4, EI_z=3e4, mass=
 @given(first=st.tuples(SOME, SOME, SOME, SOME), scale=st.sampled_from([-7.0, 0.02, 1.0]))
 def test_a_polynomial_is_fitted_as_itself_whatever_its_scale_and_sign(first: tuple[float, ...], scale: float) -> None:
     exact = np.append(first, 1.0 - sum(first))
-    found = fit("flapwise 1", 1.0, scale * (np.power.outer(STATIONS, POWERS) @ exact))
-    np.testing.assert_allclose(found.coefficients, exact, atol=2 * 10.0**-DIGITS)
-    assert found.largest < 1e-5
+    polynomial = fit("flapwise 1", 1.0, scale * (np.power.outer(STATIONS, POWERS) @ exact))
+    np.testing.assert_allclose(polynomial.coefficients, exact, atol=2 * 10.0**-DIGITS)
+    assert polynomial.largest < 1e-5
 
 
 @given(values=st.lists(SOME, min_size=20, max_size=20))
 def test_coefficients_add_up_to_one_as_printed(values: list[float]) -> None:
-    found = fit("flapwise 1", 1.0, np.array([*values, 1.0]))
-    printed = [float(f"{c:.{DIGITS}f}") for c in found.coefficients]
+    polynomial = fit("flapwise 1", 1.0, np.array([*values, 1.0]))
+    printed = [float(f"{c:.{DIGITS}f}") for c in polynomial.coefficients]
     assert sum(printed) == pytest.approx(1.0, abs=1e-9)
 
 
 def test_the_condition_number_is_of_the_problem_solved_and_large() -> None:
     """It is the largest ratio of the relative errors of coefficients and shape."""
-    found = fit("flapwise 1", 1.0, STATIONS**2)
+    polynomial = fit("flapwise 1", 1.0, STATIONS**2)
     basis = np.stack([STATIONS**k - STATIONS**6 for k in (2, 3, 4, 5)], axis=1)
     sizes = np.linalg.svd(basis, compute_uv=False)
-    assert found.condition == pytest.approx(sizes[0] / sizes[-1], rel=1e-9)
-    assert 1e3 < found.condition < 1e4
+    assert polynomial.condition == pytest.approx(sizes[0] / sizes[-1], rel=1e-9)
+    assert 1e3 < polynomial.condition < 1e4
 
 
 def test_errors_are_those_at_the_stations() -> None:
     wavy = STATIONS**2 + 0.1 * np.sin(9 * np.pi * STATIONS)
-    found = fit("flapwise 1", 1.0, wavy)
-    deviation = found.at(STATIONS) - wavy
-    assert found.largest == pytest.approx(np.abs(deviation).max(), rel=1e-12)
-    assert found.rms == pytest.approx(np.sqrt(np.mean(deviation**2)), rel=1e-12)
-    assert 0.03 < found.rms < found.largest < 0.3
+    polynomial = fit("flapwise 1", 1.0, wavy)
+    deviation = polynomial.at(STATIONS) - wavy
+    assert polynomial.largest == pytest.approx(np.abs(deviation).max(), rel=1e-12)
+    assert polynomial.rms == pytest.approx(np.sqrt(np.mean(deviation**2)), rel=1e-12)
+    assert 0.03 < polynomial.rms < polynomial.largest < 0.3
 
 
 def test_a_tip_that_stands_still_is_refused() -> None:
@@ -72,20 +72,20 @@ def test_a_tip_that_stands_still_is_refused() -> None:
 
 def test_a_uniform_beams_shapes_are_rayleighs() -> None:
     """Clamped-free beam (Rayleigh 1877): five powers follow mode 1 to 1e-4 and mode 2 to 3e-3 of the tip."""
-    found = {p.mode: p for p in polynomials(BEAM, 0.0, 20)}
+    by_name = {p.mode: p for p in polynomials(BEAM, 0.0, 20)}
     for name, k, within in (("flapwise 1", 0, 1e-4), ("edgewise 1", 0, 1e-4), ("flapwise 2", 1, 3e-3)):
         exact = shape(ROOTS[k]) / shape(ROOTS[k])[-1]
-        np.testing.assert_allclose(found[name].shape, exact, atol=2e-5)
-        np.testing.assert_allclose(found[name].at(STATIONS), exact, atol=within)
+        np.testing.assert_allclose(by_name[name].shape, exact, atol=2e-5)
+        np.testing.assert_allclose(by_name[name].at(STATIONS), exact, atol=within)
         stiffness = 3e4 if name == "edgewise 1" else 1e4
-        assert found[name].frequency == pytest.approx(ROOTS[k] ** 2 * np.sqrt(stiffness / 1.2) / 36.0, rel=1e-6)
+        assert by_name[name].frequency == pytest.approx(ROOTS[k] ** 2 * np.sqrt(stiffness / 1.2) / 36.0, rel=1e-6)
 
 
 def test_torsion_of_one_element_is_ritzs_parabola() -> None:
     """Clamped-free bar with θ = a s + b s² (Ritz 1909): the second term is that of the internal coordinates."""
     soft = uniform_blade("soft", 6.0, 0.0, EA=1e9, GJ=4.0, EI_y=1e4, EI_z=1.4e4, mass=1.2, I_y=1e-3, I_z=1e-3)
-    found = mesh_modes(soft, 0.0, 1, 4)
-    torsion = found.shapes[np.abs(found.shapes[:, -1, 3]).argmax(), :, 3]
+    solution = mesh_modes(soft, 0.0, 1, 4)
+    torsion = solution.shapes[np.abs(solution.shapes[:, -1, 3]).argmax(), :, 3]
     K, M = np.array([[1.0, 1.0], [1.0, 4.0 / 3.0]]), np.array([[1.0 / 3.0, 0.25], [0.25, 0.2]])
     a, b = scipy.linalg.eigh(K, M)[1][:, 0]
     np.testing.assert_allclose(torsion / torsion[-1], (a * STATIONS + b * STATIONS**2) / (a + b), atol=1e-9)
@@ -141,12 +141,12 @@ def test_a_blade_without_the_modes_that_elastodyn_needs_is_reported() -> None:
 
 
 @pytest.fixture(scope="module")
-def found() -> Campbell:
+def diagram() -> Campbell:
     return campbell(BLADE, CampbellRequest((0.0, 2.0), modes=3), oscillators(1.5))
 
 
-def test_shapes_are_scaled_to_a_largest_displacement_of_one(found: Campbell) -> None:
-    order, shapes = scaled(found, 0)
+def test_shapes_are_scaled_to_a_largest_displacement_of_one(diagram: Campbell) -> None:
+    order, shapes = scaled(diagram, 0)
     assert order == [0, 1, 2]
     np.testing.assert_allclose(np.abs(shapes[:, :, :3]).reshape(3, -1).max(1), 1.0, rtol=1e-12)
     assert shapes[0, -1, 2] == pytest.approx(1.0)  # flap's tip, real and positive
@@ -162,12 +162,12 @@ def test_shapes_are_in_the_blades_axes() -> None:
         assert shapes[0, -1, 2] == pytest.approx(1.0)
 
 
-def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fractions(found: Campbell) -> None:
-    figure = draw(found, 0, RPM, "oscillators: mode shapes")
+def test_the_figure_has_one_panel_per_mode_with_name_frequency_and_energy_fractions(diagram: Campbell) -> None:
+    figure = draw(diagram, 0, RPM, "oscillators: mode shapes")
     assert len(figure.axes) == 3
     texts = [t.get_text() for t in figure.findobj(Text)]  # type: ignore[attr-defined]
     for k, name in enumerate(("flapwise 1", "edgewise 1", "flapwise 2")):
-        assert f"{name}   {found.tracks.frequencies[0, k] / (2 * np.pi):.4g} Hz" in texts
+        assert f"{name}   {diagram.tracks.frequencies[0, k] / (2 * np.pi):.4g} Hz" in texts
     assert "100 % flapwise" in texts
     assert "90° out of phase" in texts  # edge lags by 0.3 rad in these oscillators
 
@@ -192,8 +192,8 @@ def test_no_line_leaves_its_panel_and_torsion_has_an_axis_in_degrees() -> None:
     assert all(t.get_text().endswith("°") for t in right.get_yticklabels())
 
 
-def test_csv_holds_the_shapes(found: Campbell, tmp_path: Path) -> None:
-    with write_csv(found, 1, tmp_path).open() as file:
+def test_csv_holds_the_shapes(diagram: Campbell, tmp_path: Path) -> None:
+    with write_csv(diagram, 1, tmp_path).open() as file:
         rows = list(csv.DictReader(file))
     assert len(rows) == 3 * 21
     first = [r for r in rows if r["name"] == "flapwise 1"]
@@ -212,9 +212,9 @@ def test_the_table_of_coefficients_states_its_conventions() -> None:
 
 def test_the_papers_blade_has_shapes_for_elastodyn() -> None:
     blade = library.load("park-blade").variants[0].blade
-    found = polynomials(blade, 1.0, 20)
-    assert [p.mode for p in found] == ["flapwise 1", "flapwise 2", "edgewise 1"]
-    assert all(p.largest < 0.01 for p in found)
+    fitted = polynomials(blade, 1.0, 20)
+    assert [p.mode for p in fitted] == ["flapwise 1", "flapwise 2", "edgewise 1"]
+    assert all(p.largest < 0.01 for p in fitted)
 
 
 BLADES = os.environ.get("SOUTHWELL_BLADES")
@@ -234,8 +234,8 @@ def test_shapes_of_the_nrel_5mw_blade_are_the_published_ones_and_more_so_without
     blade = elastodyn.read(file, Mount(length=61.5, hub_radius=1.5)).blade
     omega, x = 12.1 * np.pi / 30, np.linspace(0.0, 1.0, 51)
 
-    def off(found: tuple[Polynomial, ...]) -> dict[str, float]:
-        return {p.mode: np.abs(p.at(x) - np.power.outer(x, POWERS) @ PUBLISHED[p.mode]).max() for p in found}
+    def off(fitted: tuple[Polynomial, ...]) -> dict[str, float]:
+        return {p.mode: np.abs(p.at(x) - np.power.outer(x, POWERS) @ PUBLISHED[p.mode]).max() for p in fitted}
 
     plain, twisted = off(polynomials(blade, omega)), off(as_it_is(blade, mesh_modes(blade, omega, 50, 8)))
     for name, within in (("flapwise 1", 5e-3), ("flapwise 2", 2e-2), ("edgewise 1", 2e-3)):

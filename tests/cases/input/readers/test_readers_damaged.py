@@ -67,12 +67,12 @@ def read(path: Path) -> Reading | None:
     return None
 
 
-def honest(whole: Reading, found: Reading) -> bool:
+def honest(whole: Reading, damaged: Reading) -> bool:
     """Whether the blade is the same, or the notes say what is not."""
     try:
-        assert_same(whole.blade, found.blade)
+        assert_same(whole.blade, damaged.blade)
     except AssertionError:
-        return set(found.source.notes) != set(whole.source.notes)
+        return set(damaged.source.notes) != set(whole.source.notes)
     return True
 
 
