@@ -16,8 +16,8 @@ from scipy.sparse.linalg import splu
 from ...core.blade import BEND_Y, BEND_Z, Blade, clamped, coupled, straight
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
+from ..cache_last import cache_last
 from ..matrices.quadratic import gyroscopic_modes
-from ..protocol.cache_last import cache_last
 from ..protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
 from ..protocol.interface import BladeAdapter, CodeError, Independence, extra
 from ..sampling import Sections, sample

@@ -20,8 +20,8 @@ from scipy.sparse import linalg as spla
 from ...core.blade import Blade, clamped
 from ...core.effects import ALL_EFFECTS
 from ...core.modes import STATIONS, Modes
+from ..cache_last import cache_last
 from ..matrices.quadratic import gyroscopic_modes
-from ..protocol.cache_last import cache_last
 from ..protocol.fingerprint import Fingerprint, of_matrix, rigid_motions, tip_flexibility
 from ..protocol.interface import REFERENCE_LINE, BladeAdapter, Independence, extra
 from ..theories.reference_line import element_ends, line, moments, steps

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 
 from ...core.blade import BEND_Y, BEND_Z, Blade, uniform
 from ...core.modes import Modes
-from ..protocol.cache_last import cache_last
+from ..cache_last import cache_last
 from ..protocol.interface import CodeError
 from ..sampling import Sections, sample
 from .materials import Orthotropic

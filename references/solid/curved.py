@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
 from ...core.condense import ties
-from ..protocol.cache_last import cache_last
+from ..cache_last import cache_last
 from . import hexahedra
 from .materials import Orthotropic
 from .mesh import Bricks

@@ -20,8 +20,8 @@ from numpy.typing import NDArray
 from scipy.sparse.linalg import splu
 
 from ...core.modes import Modes
+from ..cache_last import cache_last
 from ..matrices.quadratic import gyroscopic_modes
-from ..protocol.cache_last import cache_last
 from ..protocol.interface import CodeError, extra
 from .materials import Material, Orthotropic, rotated
 from .mesh import Bricks, Clamp, fixed_by, mean_motions, means, workless

@@ -19,7 +19,7 @@ from numpy.typing import NDArray
 from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.modes import STATIONS, Modes
-from ..protocol.cache_last import cache_last
+from ..cache_last import cache_last
 from ..protocol.interface import Independence, Motion
 from .ritz import Y, Z, integral, part, shape_of, stationary_modes, union
 from .spectral import clamped_functions

@@ -2,7 +2,7 @@
 
 import numpy as np
 
-from southwell.references.protocol.cache_last import cache_last
+from southwell.references.cache_last import cache_last
 
 
 def test_the_latest_result_is_kept_for_the_same_arguments() -> None:
