@@ -108,14 +108,14 @@ def chain(blade: Blade, elements: int) -> Chain:
     soft = np.flatnonzero((sizes > SOFT * largest).all(0))
     if not len(soft):
         raise CodeError(f"{blade.name}: rigid: nothing vibrates")
-    per, zero, one = len(soft), np.zeros(3), np.eye(3)
-    offset, turned, bodies = [], [], []
+    per, zero, unit = len(soft), np.zeros(3), np.eye(3)
+    offset, rotations, bodies = [], [], []
     stiffness = np.zeros((elements * per, elements * per))
     for k in range(elements):
         to = axes[k].T if k else np.eye(3)
         arm = position[k + 1] - position[k] if k else position[1]
         offset += [to @ arm, *[zero] * (per - 1)]
-        turned += [to @ axes[k + 1], *[one] * (per - 1)]
+        rotations += [to @ axes[k + 1], *[unit] * (per - 1)]
         bodies += [*[NOTHING] * (per - 1), Body(mass[k + 1], centre[k + 1], moments[k + 1])]
         own = slice(k * per, (k + 1) * per)
         stiffness[own, own] = np.linalg.inv(compliance[k][np.ix_(soft, soft)])
@@ -123,14 +123,14 @@ def chain(blade: Blade, elements: int) -> Chain:
         strain=np.tile(soft, elements),
         stiffness=stiffness,
         offset=np.array(offset),
-        axes=np.array(turned),
+        axes=np.array(rotations),
         bodies=tuple(bodies),
         root=Body(mass[0], centre[0], moments[0]).moved(position[0], axes[0]),
         base=position[0],
         nodes=np.arange(1, elements + 1) * per - 1,
         reach=np.zeros((elements, 3)),
         arc=arc[1:],
-        tip=(zero, one),
+        tip=(zero, unit),
     )
 
 
@@ -177,11 +177,11 @@ class _Links:
         )
         self.model: Any = pinocchio.Model()
         self.model.gravity.linear = np.array([-gravity, 0.0, 0.0])
-        place = {-1: 0}
+        joint_of = {-1: 0}
         for k in links.tolist():
             pose = pinocchio.SE3(tree.axes[k], tree.offset[k])
-            joint = self.model.addJoint(place[int(tree.parent[k])], kinds[tree.strain[k]](), pose, f"{k}")
-            place[k] = joint
+            joint = self.model.addJoint(joint_of[int(tree.parent[k])], kinds[tree.strain[k]](), pose, f"{k}")
+            joint_of[k] = joint
             body = bodies[k]
             if body.mass or body.moments.any():
                 inertia = pinocchio.Inertia(body.mass, body.centre, body.moments)
@@ -265,16 +265,16 @@ def _standing(tree: TurbineTree) -> tuple[Array, Array]:
 
 def _on_hub(tree: TurbineTree, q: Array) -> TurbineTree:
     """The tree of one blade on its hub, which moves in the ground's axes with six coordinates; its bodies are the blade's."""
-    place = turbine_motion.placed(tree, q)
+    placed = turbine_motion.placed(tree, q)
     joints, angles = tree.blades[0], np.arange(tree.spin, tree.hub + 1)
-    still, one = np.zeros((5, 3)), np.broadcast_to(np.eye(3), (6, 3, 3))
+    still, unit = np.zeros((5, 3)), np.broadcast_to(np.eye(3), (6, 3, 3))
     count = 6 + len(angles) + len(joints)
     return replace(
         tree,
         strain=np.concatenate([np.arange(6), tree.strain[angles], tree.strain[joints]]),
         parent=np.arange(-1, count - 1),
-        offset=np.concatenate([place.origin[tree.spin][None], still, 0.0 * tree.offset[angles], tree.offset[joints]]),
-        axes=np.concatenate([one, place.axes[tree.spin][None], tree.axes[angles[1:]], tree.axes[joints]]),
+        offset=np.concatenate([placed.origin[tree.spin][None], still, 0.0 * tree.offset[angles], tree.offset[joints]]),
+        axes=np.concatenate([unit, placed.axes[tree.spin][None], tree.axes[angles[1:]], tree.axes[joints]]),
         bodies=(*[NOTHING] * (6 + len(angles)), *(tree.bodies[k] for k in joints)),
         spin=6,
         hub=5 + len(angles),
@@ -319,8 +319,8 @@ def _frequency(tree: TurbineTree, single: _Links, at_blade: Array, omega: float)
     first = single.model.nv - len(joints)
     M, _, K = single.linearized(np.append(np.zeros(first), at_blade), omega, 0.0)
     M, K = M[first:, first:], K[first:, first:] + tree.stiffness[np.ix_(joints, joints)]
-    bent = np.linalg.solve(K, M @ np.ones(len(joints)))
-    return float(np.sqrt(abs(bent @ K @ bent / (bent @ M @ bent))))
+    deflection = np.linalg.solve(K, M @ np.ones(len(joints)))
+    return float(np.sqrt(abs(deflection @ K @ deflection / (deflection @ M @ deflection))))
 
 
 CODE = PinocchioTurbine()

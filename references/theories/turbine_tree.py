@@ -161,34 +161,34 @@ def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
     bodies = list(tower.bodies)
     springs = [tower.stiffness]
 
-    def add(kind: int, on: int, at: Array, turned: Array, spring: float, body: Body = NOTHING) -> int:
+    def add(kind: int, on: int, at: Array, rotation_in_parent: Array, spring: float, body: Body = NOTHING) -> int:
         strain.append(kind)
         parent.append(on)
         offset.append(at)
-        axes.append(turned)
+        axes.append(rotation_in_parent)
         bodies.append(body)
         springs.append(np.array([[spring]]))
         return len(strain) - 1
 
-    at, turned = tower.tip
+    at, rotation_in_parent = tower.tip
     on = len(strain) - 1
     nacelle = of_matrix(turbine.nacelle)
     if np.isfinite(turbine.yaw):
-        on, at, turned = add(YAW, on, at, turned, turbine.yaw, nacelle), np.zeros(3), np.eye(3)
+        on, at, rotation_in_parent = add(YAW, on, at, rotation_in_parent, turbine.yaw, nacelle), np.zeros(3), np.eye(3)
     else:
-        bodies[on] = joined(bodies[on], nacelle.moved(at, turned))
+        bodies[on] = joined(bodies[on], nacelle.moved(at, rotation_in_parent))
     pose, drive = turbine.shaft, turbine.drivetrain
-    spin = hub = add(SPIN, on, at + turned @ pose[:3, 3], turned @ pose[:3, :3], 0.0)
+    spin = hub = add(SPIN, on, at + rotation_in_parent @ pose[:3, 3], rotation_in_parent @ pose[:3, :3], 0.0)
     carried = range(spin)
     if drive.free or np.isfinite(drive.stiffness):
         locked = 0.0 if drive.free else drive.stiffness
         hub = add(SPIN, spin, np.zeros(3), np.eye(3), locked)
-    rest = _undeformed(blade)
+    undeformed = _undeformed(blade)
     roots, whole, joints = [], [], []
     for k in range(turbine.blades):
         turn = rotation(2, np.array(2.0 * np.pi * k / turbine.blades))
         roots.append(blade.root.moved(np.zeros(3), turn))
-        whole.append(joined(blade.root, rest).moved(np.zeros(3), turn))
+        whole.append(joined(blade.root, undeformed).moved(np.zeros(3), turn))
         first = len(strain)
         joints.append(np.arange(first, first + len(blade.strain)))
         strain += list(blade.strain)
@@ -224,7 +224,7 @@ def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
 
 
 def weighed(tree: TurbineTree, M: Array, elements: int) -> Fingerprint:
-    """What a mass matrix (n, n) weighs of a tree at rest on a base that moves in all directions, see ``floating``."""
+    """The inertia in a mass matrix (n, n) of a tree at rest on a base that moves in all directions, see ``floating``."""
     return of_turbine(M[:6, :6], float(M[tree.spin, tree.spin]), elements)
 
 
@@ -255,8 +255,8 @@ def on_springs(tower: Chain, support: Support) -> Chain:
 def _undeformed(chain: Chain) -> Body:
     """All links of a chain in the axes of its carrier, its joints at zero."""
     R, p, out = np.eye(3), np.zeros(3), []
-    for at, turned, body in zip(chain.offset, chain.axes, chain.bodies, strict=True):
+    for at, rotation_in_parent, body in zip(chain.offset, chain.axes, chain.bodies, strict=True):
         p = p + R @ at
-        R = R @ turned
+        R = R @ rotation_in_parent
         out.append(body.moved(p, R))
     return joined(*out)
