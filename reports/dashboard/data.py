@@ -12,7 +12,7 @@ from ...references.protocol import registry as registry
 from ...references.protocol.description import Description, describe
 from ..shared import summary
 from ..shared.summary import SYMBOL, WORST_FIRST, columns, plus_minus, size, table_column
-from ..shared.units import BY_KEY, Units
+from ..shared.units import Units
 from ..verification import code_pages, controls, evidence, paper_table, witnesses
 from ..verification.figures import core_lines
 from . import properties
@@ -48,7 +48,9 @@ def first(run: Run, name: str) -> dict[str, Any]:
         "evidence": evidence.rows(run),
         "answer": WORST_FIRST.index(evidence.VERDICT_OF[evidence.word(run)]),
         "verdicts": verdicts(),
-        "cases": [{"name": c, "title": titles.get(c, ""), "page": page(c), "unit": units(run, c).speed} for c in cases],
+        "cases": [
+            {"name": c, "title": titles.get(c, ""), "page": page(c), "unit": summary.units(run, c).speed} for c in cases
+        ],
         "columns": [
             {"name": h, "shares": shared(run, h), "page": page(h, "code") if h in pages else None} for h in heads
         ],
@@ -57,7 +59,7 @@ def first(run: Run, name: str) -> dict[str, Any]:
             [
                 cases.index(c.case),
                 heads.index(table_column(c)),
-                round(c.omega * units(run, c.case).speeds, 6),
+                round(c.omega * summary.units(run, c.case).speeds, 6),
                 c.name,
                 WORST_FIRST.index(c.verdict),
                 size(c),
@@ -105,17 +107,11 @@ def shared(run: Run, head: str) -> str:
     return ", ".join(dict.fromkeys(c.shares for c in run.cells if table_column(c) == head and c.shares))
 
 
-def units(run: Run, case: str) -> Units:
-    """The units of a case."""
-    setting = next((s for s in run.settings if s.case == case), None)
-    return BY_KEY[setting.unit if setting else "rad_s"]
-
-
 def of_case(run: Run, case: str) -> dict[str, Any]:
     """The data of one case: setting, cells, refinements, and core's shapes at the lowest and highest speed."""
-    u = units(run, case)
+    u = summary.units(run, case)
     cells = [c for c in run.cells if c.case == case]
-    setting = next((s for s in run.settings if s.case == case), None)
+    setting = summary.setting(run, case)
     checks = tuple(c for c in run.property_checks if c.case == case)
     settings = (setting,) if setting else ()
     alone = replace(run, cells=tuple(cells), controls=(), settings=settings, property_checks=checks)
@@ -156,7 +152,7 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
         judged = [c for c in cells if c.verdict == verdict]
         far = summary.largest(judged) if verdict == "known difference" else evidence.farthest(judged)
         text = plus_minus(far) if far and size(far) is not None else ""
-        parts = (summary.column(far), far.name, units(run, case).at(far.omega)) if far else ()
+        parts = (summary.column(far), far.name, summary.units(run, case).at(far.omega)) if far else ()
         where = ", ".join(part for part in parts if part)
         more = f"; target {summary.allowed(far.target)}" if far and verdict != "known difference" else ""
         if n:
@@ -229,7 +225,7 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
     for case in dict.fromkeys(c.case for c in cells):
         here = [c for c in cells if c.case == case]
         far = summary.worst(here)
-        where = f"{far.name}, {units(run, case).at(far.omega)}" if far else ""
+        where = f"{far.name}, {summary.units(run, case).at(far.omega)}" if far else ""
         reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
         verdict = WORST_FIRST.index(summary.worst_verdict(here))
         worst.append([case, page(case), verdict, len(here), plus_minus(far) if far else "", where, reason])

@@ -50,7 +50,7 @@ def output() -> Console:
     return console if console.is_terminal else _Output(highlight=False, width=WIDE)
 
 
-class _Display:
+class Display:
     """A progress bar on standard error; without a terminal, a line from time to time."""
 
     def __init__(self, *columns: ProgressColumn) -> None:
@@ -59,6 +59,7 @@ class _Display:
             SpinnerColumn(),
             BarColumn(bar_width=30),
             MofNCompleteColumn(),
+            TimeElapsedColumn(),
             *columns,
             console=self.console,
             transient=True,
@@ -87,11 +88,11 @@ class _Display:
         return True
 
 
-class Watch(_Display):
+class Watch(Display):
     """Progress of a run."""
 
     def __init__(self) -> None:
-        super().__init__(TimeElapsedColumn(), TextColumn("{task.description}", markup=False))
+        super().__init__(TextColumn("{task.description}", markup=False))
         self.task = self.bar.add_task("starting")
 
     def show(self, step: Step) -> None:
@@ -103,7 +104,7 @@ class Watch(_Display):
             self.console.print(f"{step.done} of {step.total} done{shown}", markup=False, soft_wrap=True)
 
 
-class Counter(_Display):
+class Counter(Display):
     """Progress of many equal tasks, with the remaining time.
 
     Args:
@@ -113,7 +114,7 @@ class Counter(_Display):
 
     def __init__(self, what: str, total: int) -> None:
         remaining = (TextColumn("remaining:"), TimeRemainingColumn())
-        super().__init__(TextColumn(what), TimeElapsedColumn(), *remaining)
+        super().__init__(TextColumn(what), *remaining)
         self.what, self.total = what, total
         self.task = self.bar.add_task("", total=total)
         self.first: tuple[int, float] | None = None

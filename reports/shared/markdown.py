@@ -21,6 +21,11 @@ def table(rows: Sequence[dict[str, str]]) -> str:
     return re.sub(r":-+\|", ":--|", re.sub(r" +\|", " |", text))
 
 
+def plain_table(rows: Sequence[dict[str, str]]) -> str:
+    """A table of text without markup; empty without rows."""
+    return table([{head: plain(field) for head, field in row.items()} for row in rows]) if rows else ""
+
+
 def anchor(heading: str) -> str:
     """The fragment of a heading on GitHub and in the HTML report: ``park-blade/windpact`` → ``park-bladewindpact``."""
     return re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-")

@@ -7,10 +7,11 @@ from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import get_args
 
-from ...cases.judge.results import Cell, Run, Verdict
+from ...cases.judge.results import Cell, Run, Setting, Verdict
 from ...cases.judge.verdict import unsigned
 from ...cases.judge.witnesses import under_confirmed
 from .statuses import FAILED, INCOMPLETE, PASSED
+from .units import BY_KEY, RAD_S, Units
 
 SYMBOL: dict[Verdict, str] = {
     "pass": "✔",
@@ -114,6 +115,17 @@ def counts(cells: Iterable[Cell]) -> dict[Verdict, int]:
     tally = Counter(c.verdict for c in cells)
     assert set(tally) <= set(get_args(Verdict))
     return {v: tally[v] for v in WORST_FIRST}
+
+
+def setting(run: Run, case: str) -> Setting | None:
+    """The setting of a case; None if the run does not state it."""
+    return next((s for s in run.settings if s.case == case), None)
+
+
+def units(run: Run, case: str) -> Units:
+    """The units of a case; rad/s if the run does not state them."""
+    stated = setting(run, case)
+    return BY_KEY[stated.unit] if stated else RAD_S
 
 
 def cases(run: Run) -> list[str]:

@@ -18,7 +18,7 @@ from ..shared import summary
 from ..shared.markdown import plain, table
 from ..shared.summary import columns, table_column
 from ..verification.case_tables import comparison
-from ..verification.report import LEGEND, heat, unasked, units
+from ..verification.report import LEGEND, heat, unasked
 
 CASE, OMEGA = "park-cantilever", 10.0
 """Case and speed (rad/s) of Table 1 of the paper."""
@@ -117,9 +117,9 @@ def block(run: Run) -> str:
 Each field shows the worst verdict of all modes and speeds, and the largest difference from Southwell's own solver with that
 verdict (a known difference is from it with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
 
-## {CASE} at {units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
+## {CASE} at {summary.units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 
-{comparison(table1, units(run, CASE))}
+{comparison(table1, summary.units(run, CASE))}
 
 Written by `{run.command}` with {made}.
 """

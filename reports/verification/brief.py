@@ -13,7 +13,7 @@ from ...cases.regression.history import this_machine
 from ...cases.store.results_file import RESULTS
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..shared import summary
-from ..shared.markdown import plain, table
+from ..shared.markdown import plain, plain_table, table
 from ..shared.paths import file_name
 from . import controls, evidence, paper_table, report
 from . import witnesses as groups_text
@@ -62,7 +62,7 @@ def render(run: Run, folder: Path, document: Document) -> str:
         *report.marked(run, [line for line in (summary.incomplete(run), evidence.answer(run)) if line]),
         table(_cover(run, folder, document)),
         "## Evidence",
-        table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
+        plain_table(evidence.rows(run)),
         *[plain(line) for line in (paper_table.line(run), groups_text.headline(run), controls.headline(run)) if line],
         "## Changes",
         "\n\n".join(plain(line) for line in document.since) or "Not compared with an earlier run (`--since`).",
@@ -114,7 +114,7 @@ def _size(difference: float | None, uncertainty: float | None) -> float:
 
 def _margin(run: Run, case: str) -> dict[str, str]:
     cells = [c for c in run.cells if c.case == case]
-    setting = next((s for s in run.settings if s.case == case), None)
+    setting = summary.setting(run, case)
     verdict = summary.worst_verdict(c for c in cells if c.verdict != "known difference") if cells else "not run"
     required = f" of {setting.groups} required" if setting and setting.groups else ""
     return {

@@ -16,7 +16,6 @@ from ...references.protocol.description import Description, describe
 from ..shared import summary
 from ..shared.markdown import plain, table
 from ..shared.summary import SYMBOL
-from .report import units
 
 FOLDER = "codes"
 """Sub-folder of the pages."""
@@ -112,7 +111,7 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
     for case in dict.fromkeys(c.case for c in cells):
         here = [c for c in cells if c.case == case]
         far = summary.worst(here)
-        where = f"{far.name}, {units(run, case).at(far.omega)}" if far else ""
+        where = f"{far.name}, {summary.units(run, case).at(far.omega)}" if far else ""
         reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
         counted = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(here).items() if n)
         rows.append(

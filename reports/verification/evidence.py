@@ -8,7 +8,6 @@ from ...cases.judge.results import Cell, Run, Verdict
 from ...cases.judge.witnesses import INDEPENDENT, groups, under_confirmed, witnesses
 from ..shared import summary
 from ..shared.summary import SYMBOL
-from ..shared.units import BY_KEY, RAD_S, Units
 from . import properties
 
 KINDS: dict[str, Callable[[Cell], bool]] = {
@@ -201,7 +200,7 @@ def _shown(run: Run, cell: Cell | None) -> str:
     if cell is None:
         return ""
     if cell.difference is None:
-        units = _units(run, cell)
+        units = summary.units(run, cell.case)
         return f"{SYMBOL[cell.verdict]} {cell.case}, {summary.column(cell)}, {units.at(cell.omega)}: no answer: {cell.reason}"
     cause = f"cause: {cell.reason.partition(';')[0]}"
     more = f"target {summary.allowed(cell.target)}" if cell.verdict in COMPARED else cause
@@ -212,8 +211,4 @@ def _shown(run: Run, cell: Cell | None) -> str:
 
 def where(run: Run, cell: Cell) -> str:
     """Case, code, mode and speed of a cell as text."""
-    return f"{cell.case}, {summary.column(cell)}, {cell.name}, {_units(run, cell).at(cell.omega)}"
-
-
-def _units(run: Run, cell: Cell) -> Units:
-    return next((BY_KEY[s.unit] for s in run.settings if s.case == cell.case), RAD_S)
+    return f"{cell.case}, {summary.column(cell)}, {cell.name}, {summary.units(run, cell.case).at(cell.omega)}"

@@ -13,10 +13,10 @@ from ...cases.run.executors import Serial
 from ...cases.store.stored import remembering
 from ..condense import page
 from ..shared import summary
-from ..shared.markdown import anchor, plain, table
+from ..shared.markdown import anchor, plain, plain_table, table
 from ..shared.paths import file_name
 from ..shared.summary import SYMBOL, amount, columns, table_column
-from ..shared.units import BY_KEY, Units
+from ..shared.units import Units
 from . import case_tables, controls, diagnoses, error_budget, evidence, paper_table, properties, witnesses
 
 FEW = 3
@@ -42,7 +42,7 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
     among = columns(run.cells)
     cases = summary.cases(run)
     drawing = remembering(executor if executor and len(cases) > FEW else Serial())
-    asked = {case: drawing.submit(_figures, part(run, case), case, units(run, case), among) for case in cases}
+    asked = {case: drawing.submit(_figures, part(run, case), case, summary.units(run, case), among) for case in cases}
     for case, images in asked.items():
         for kind, image in images.result().items():
             name = f"{file_name(case)}-{kind}.svg"
@@ -65,11 +65,6 @@ def _figures(run: Run, case: str, units: Units, among: Sequence[str]) -> dict[st
     return drawing.of_case(run, case, units, among)
 
 
-def units(run: Run, case: str) -> Units:
-    """The units of a case; rad/s if the run does not state them."""
-    return BY_KEY[next((s.unit for s in run.settings if s.case == case), "rad_s")]
-
-
 def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
     """The text of the report.
 
@@ -88,7 +83,7 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
     environment.filters["plain"] = plain
     return environment.get_template("report.md.jinja").render(
         headline=marked(run, [line for line in (summary.incomplete(run), *evidence.first(run)) if line]),
-        evidence=table([{k: plain(v) for k, v in row.items()} for row in evidence.rows(run)]) if run.cells else "",
+        evidence=plain_table(evidence.rows(run)),
         remarks=[
             plain(line) for line in (paper_table.line(run), witnesses.headline(run), controls.headline(run)) if line
         ],
@@ -96,20 +91,16 @@ def render(run: Run, figures: dict[str, list[str]], condensed: str = "") -> str:
         unasked=unasked(run),
         legend=LEGEND,
         cases=[section(run, case, figures.get(case, [])) for case in summary.cases(run)],
-        witnesses=_plainly(witnesses.table(run)),
-        origins=_plainly(witnesses.origins(run)),
+        witnesses=plain_table(witnesses.table(run)),
+        origins=plain_table(witnesses.origins(run)),
         short=[plain(line) for line in witnesses.missing(run)],
-        controls=_plainly(controls.overview(run)),
+        controls=plain_table(controls.overview(run)),
         versions=table([{"what": plain(k), "version": plain(v)} for k, v in run.versions.items()])
         if run.versions
         else "",
         command=" ".join(run.command.split()).replace("`", "'"),
         condensed=condensed,
     )
-
-
-def _plainly(rows: list[dict[str, str]]) -> str:
-    return table([{k: plain(v) for k, v in row.items()} for row in rows]) if rows else ""
 
 
 def headline(run: Run) -> list[str]:
@@ -217,8 +208,8 @@ class Section:
 def section(run: Run, case: str, figures: list[str]) -> Section:
     """The section of one blade: setting, frequencies, differences by speed, and reasons."""
     cells = [c for c in run.cells if c.case == case]
-    setting = next((s for s in run.settings if s.case == case), None)
-    unit = units(run, case)
+    setting = summary.setting(run, case)
+    unit = summary.units(run, case)
     judged = [c for c in cells if c.role != "measured"] or cells
     speeds = sorted({c.omega for c in judged if c.mode})
     printed = [c.omega for c in cells if c.role == "table"]
@@ -240,11 +231,11 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
         figures=figures,
         reasons=table(reasons) if reasons else "",
         count=len(reasons),
-        diagnoses=_plainly(diagnoses.rows(run, case)),
-        error_budget=table([{k: plain(v) for k, v in row.items()} for row in split]) if split else "",
+        diagnoses=plain_table(diagnoses.rows(run, case)),
+        error_budget=plain_table(split),
         error_budget_at=error_budget.heading(run, case, unit),
-        readings=_plainly(properties.readings(run, case)),
-        models=_plainly(properties.models(run, case)),
-        invariances=_plainly(properties.invariances(run, case)),
+        readings=plain_table(properties.readings(run, case)),
+        models=plain_table(properties.models(run, case)),
+        invariances=plain_table(properties.invariances(run, case)),
         fastest=unit.at(max(speeds)) if speeds else "the highest speed",
     )

@@ -19,7 +19,7 @@ def table(run: Run) -> list[dict[str, str]]:
     for case in summary.cases(run):
         testimony = witnesses(run, case)
         agreeing = groups(testimony)
-        setting = next((s for s in run.settings if s.case == case), None)
+        setting = summary.setting(run, case)
         counted = [w for group in agreeing for w in group]
         rest = [w for w in testimony if w not in counted]
         rows.append(

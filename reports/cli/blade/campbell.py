@@ -11,8 +11,7 @@ from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, SpinnerColumn, TextColumn, TimeElapsedColumn
+from rich.progress import TextColumn
 
 from ....cases.campbell import confirmation, interpolation
 from ....cases.campbell.changes import changes as blade_changes
@@ -38,7 +37,7 @@ from ...campbell.tables import Sheet
 from ...documents import html as as_html
 from ...documents import pdf as as_pdf
 from ...shared import not_used
-from ...shared.console import output
+from ...shared.console import Display, output
 from ...shared.paths import file_name
 from ...shared.units import RPM, Units
 from ..arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
@@ -264,7 +263,7 @@ def solve(blade: Blade, request: CampbellRequest, units: Units, workers: int = 1
     """
     progress = SpeedProgress(blade.name, request.speeds, units)
     with ExitStack() as stack:
-        stack.enter_context(progress.bar)
+        stack.enter_context(progress)
         here = solver(blade, request, progress, units.at)
         if workers == 1:
             return campbell(blade, request, here)
@@ -273,23 +272,14 @@ def solve(blade: Blade, request: CampbellRequest, units: Units, workers: int = 1
         return campbell(blade, request, _shared(blade, request, pool, here, progress, units))
 
 
-class SpeedProgress:
+class SpeedProgress(Display):
     """A progress bar on standard error over the requested speeds; others are shown as they are solved."""
 
     def __init__(self, name: str, speeds: Sequence[float], units: Units) -> None:
-        console = Console(stderr=True, highlight=False)
-        self.asked, self.units = set(speeds), units
-        self.bar = Progress(
-            SpinnerColumn(),
-            TextColumn("{task.fields[name]}", markup=False),
-            BarColumn(bar_width=30),
-            MofNCompleteColumn(),
-            TimeElapsedColumn(),
-            TextColumn("{task.description}", markup=False),
-            console=console,
-            transient=True,
-            disable=not console.is_terminal,
+        super().__init__(
+            TextColumn("{task.fields[name]}", markup=False), TextColumn("{task.description}", markup=False)
         )
+        self.asked, self.units = set(speeds), units
         self.task = self.bar.add_task("", total=len(speeds), name=name)
 
     def __call__(self, omega: float) -> None:

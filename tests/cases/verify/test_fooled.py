@@ -257,7 +257,7 @@ def test_a_wider_target_of_a_table_is_bounded_and_shown() -> None:
     wide = samples.cell(role="table", code="author/one", difference=1.4e-2, value=11.86, target=2e-2, shares="nothing")
     page = Run((wide,))
     assert "1.40 % (target 2.00 %)" in matrix_report.heat(page)
-    assert "(target 2.00 %)" in comparison([wide], matrix_report.units(page, "beam"))
+    assert "(target 2.00 %)" in comparison([wide], summary.units(page, "beam"))
     (table,) = terminal.matrix(page, 100)
     assert "1.4 of 2" in str(list(table.columns[1].cells))
 

@@ -14,6 +14,7 @@ from southwell.cases.store.results_file import read, write
 from southwell.reports.documents import document, html, print_nodes
 from southwell.reports.shared import summary
 from southwell.reports.shared.markdown import plain
+from southwell.reports.shared.units import RAD_S
 from southwell.reports.verification import evidence, paper_table
 from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification.case_tables import comparison
@@ -307,7 +308,7 @@ def test_modes_of_a_code_with_fewer_effects_are_in_the_row_of_the_mode_with_all_
         samples.cell(mode=2, family="edgewise", full=5.0, reference=6.0, code="less", verdict="known difference"),
         samples.cell(mode=3, family="torsion", full=9.0, reference=9.5, code="less", verdict="known difference"),
     ]
-    table = comparison([*full, *less], matrix_report.BY_KEY["rad_s"])
+    table = comparison([*full, *less], RAD_S)
     assert [row.split("|")[1].strip() for row in table.splitlines()[2:]] == [
         "edgewise 1",
         "axial 1",
