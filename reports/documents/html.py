@@ -32,6 +32,7 @@ td.fail { font-weight: 700; } p[class] { padding: 0.4rem 0.8rem; border-radius: 
 body { font: 15px/1.5 system-ui, "Segoe UI", "DejaVu Sans", sans-serif; color: var(--ink); background: white;
   max-width: 1500px; margin: 0 auto; padding: 1rem 1.5rem 4rem; }
 p, li, h1, h2, h3, summary { max-width: 62rem; overflow-wrap: anywhere; } td code { overflow-wrap: anywhere; }
+td:nth-child(2):last-child { overflow-wrap: anywhere; }
 h1 { font-size: 1.7rem; } h2 { font-size: 1.35rem; margin-top: 2.5rem; border-bottom: 1px solid var(--faint); }
 h3 { font-size: 1.08rem; } a { color: var(--link); }
 .wide { overflow-x: auto; margin: 1rem 0; }
