@@ -142,7 +142,9 @@ def test_a_page_fits_a_telephone_also_with_long_names(tmp_path: Path) -> None:
     name = "blade_of_a_research_turbine_" * 4
     page = tmp_path / "page.html"
     digest = "4e" * 32
-    text = f"# Diagram of {name}\n\n{name}: verdict\n\n- {name}\n\n|file|digest|\n|:--|:--|\n|name|{name}, `{digest}`|\n"
+    text = (
+        f"# Diagram of {name}\n\n{name}: verdict\n\n- {name}\n\n|file|digest|\n|:--|:--|\n|name|{name}, `{digest}`|\n"
+    )
     page.write_text(html.render(text, tmp_path), encoding="utf-8")
     with browsers.browser() as running, browsers.tab(running) as tab:
         tab.set_viewport_size({"width": 390, "height": 800})
