@@ -88,6 +88,17 @@ def test_torsion_about_an_axis_off_the_mass_centre_is_flap_too() -> None:
     np.testing.assert_allclose(fractions, [0.25 / 0.35, 0, 0.1 / 0.35, 0], atol=1e-12)
 
 
+def test_a_tip_mass_off_the_axis_moves_with_bending_and_torsion() -> None:
+    """2 kg half a metre towards y: torsion of −2 rad cancels the flap of 1 m; the slope v' = 2/L moves it along the blade."""
+    tip = np.diag([2.0, 2.0, 2.0, 0.5, 0.0, 0.5])
+    tip[0, 5] = tip[5, 0] = -1.0
+    tip[2, 3] = tip[3, 2] = 1.0
+    bent, torsion = STATIONS**2, -2.0 * STATIONS
+    (fractions,) = participation(modes(shape(y=bent, z=bent, t=torsion)), replace(POINTLIKE, tip_mass=tip))
+    flap, axial = MASS * LENGTH / 5, 2.0 * (0.5 * 2.0 / LENGTH) ** 2
+    np.testing.assert_allclose(fractions, np.array([flap, flap + 2.0, 0, axial]) / (2 * flap + 2.0 + axial), atol=1e-9)
+
+
 def shifted(blade: Blade, y: float, z: float) -> Blade:
     """The same solid described about an axis moved by (y, z) in its (untwisted) sections."""
     x = sp.adjoint(sp.pose(np.eye(3), np.array([0.0, y, z])))  # twist at the new point → twist at the old
