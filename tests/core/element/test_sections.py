@@ -42,6 +42,14 @@ def test_the_root_is_coned_with_its_hub_radius_and_pitched() -> None:
     np.testing.assert_allclose(pose[:3, 1], np.cos(pitch) * np.array([0, 1, 0]) + np.sin(pitch) * lifted, atol=1e-15)
 
 
+def test_an_element_has_the_twist_that_is_linear_between_stations() -> None:
+    """Nodes at a quarter, a half and three quarters of a blade that is twisted by 0.8 rad."""
+    mesh = discretize(replace(beam(GA), twist=np.array([0.0, 0.8])), 4)
+    np.testing.assert_allclose(
+        np.arctan2(mesh.nodes[:, 2, 1], mesh.nodes[:, 1, 1]), [0.0, 0.2, 0.4, 0.6, 0.8], atol=1e-12
+    )
+
+
 def test_a_tip_mass_is_in_the_axes_of_the_tip_section() -> None:
     """A plate across the z axis of a section that is twisted and pitched by 0.7 rad."""
     plate = np.diag([2.0, 2.0, 2.0, 1.0, 1.0, 2.0])
