@@ -146,6 +146,7 @@ def test_families_of_a_beam_are_those_of_its_closed_form() -> None:
 def test_without_moments_of_inertia_torsion_has_no_energy() -> None:
     (fractions,) = participation(modes(shape(z=STATIONS, t=100.0 * STATIONS)), POINTLIKE)
     np.testing.assert_allclose(fractions, [1, 0, 0, 0], atol=1e-12)
+    assert not participation(modes(shape(t=STATIONS)), POINTLIKE).any()
 
 
 def test_axial_motion_is_named() -> None:

@@ -48,6 +48,7 @@ def test_an_offset_mass_is_coupled_however_small_the_section_is() -> None:
     assert bl.coupled(replace(small, mass=shift.T @ thin @ shift))
 
 
+@pytest.mark.slow
 @settings(max_examples=40, deadline=None)
 @given(seed=st.integers(0, 10**6), kg=unit, m=unit, s=unit)
 def test_predicates_and_frequencies_do_not_depend_on_units(seed: int, kg: float, m: float, s: float) -> None:

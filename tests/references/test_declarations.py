@@ -101,6 +101,7 @@ def test_refinements_are_within_the_codes_own_limits(name: str) -> None:
     assert code.levels[-1] <= (code.finest or code.levels[-1]) <= (code.max_elements or np.inf)
 
 
+@pytest.mark.slow
 def test_no_adapter_imports_its_code_until_it_solves() -> None:
     program = (
         "import sys\nfrom southwell.references.protocol import registry\n"

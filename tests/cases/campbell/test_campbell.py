@@ -180,6 +180,7 @@ def test_the_speed_without_a_steady_state_is_told() -> None:
         campbell(blade, CampbellRequest((0.0, 1e5), modes=2, elements=8))
 
 
+@pytest.mark.slow
 def test_core_has_the_modes_at_n_per_revolution_where_the_diagram_says() -> None:
     blade = library.load("park-blade").variants[0].blade
     result = campbell(blade, CampbellRequest(tuple(np.arange(0.0, 31.0, 5.0) * RPM_TO), modes=3, elements=15))

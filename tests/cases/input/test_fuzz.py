@@ -72,6 +72,7 @@ def test_a_process_that_dies_is_told_and_the_rest_goes_on(tmp_path: Path, monkey
     assert "-6" in rows[0]["wrong"]
 
 
+@pytest.mark.slow
 def test_the_script_runs_alone() -> None:
     done = subprocess.run([sys.executable, fuzz.__file__, "5", "--seed", "3"], capture_output=True, text=True)
     assert done.returncode == 0, done.stdout + done.stderr

@@ -338,6 +338,7 @@ def test_a_mechanism_where_a_blade_is_wanted_and_the_reverse(capsys, tmp_path: P
     assert phrase in err
 
 
+@pytest.mark.slow
 def test_cases_lists_mechanisms_and_codes_lists_what_solves_them(capsys) -> None:
     assert all(name in run(capsys, "cases")[1] for name in library.mechanisms())
     assert "exudyn-loops" in run(capsys, "codes")[1]

@@ -260,6 +260,7 @@ def test_one_per_cent_of_mass_in_one_adapter_is_found(monkeypatch: pytest.Monkey
     assert result[0].difference == pytest.approx(0.01, rel=1e-6)
 
 
+@pytest.mark.slow
 def test_fingerprints_cross_the_process_unchanged() -> None:
     blade = BLADES["crooked"]
     adapter = code("scikit-fem-reissner")

@@ -109,6 +109,7 @@ def test_more_accuracy_takes_more_elements() -> None:
     assert (np.abs(rough.frequencies / fine.frequencies - 1.0) <= rough.uncertainty + 1e-9).all()
 
 
+@pytest.mark.slow
 def test_accuracy_out_of_reach_is_reported() -> None:
     with pytest.warns(AccuracyWarning, match=r"relative uncertainty .* exceeds the requested accuracy 1.0e-15"):
         solution = solve.modes(cable(1e3), 30.0, count=1, accuracy=1e-15)
@@ -168,6 +169,7 @@ def test_the_theoretical_order_by_chance_does_not_make_the_extrapolation_exact()
     assert abs(estimate.values[0] - 1.0) <= estimate.of_values[0] < estimate.of_finest[0]
 
 
+@pytest.mark.slow
 def test_the_uncertainty_where_the_order_passes_the_theoretical_one() -> None:
     """The elements of this blade converge with order 3, 4, 5 and 6 as they are halved."""
     blade = load("windpact-1.5").variants[0].blade

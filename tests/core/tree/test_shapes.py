@@ -243,6 +243,7 @@ def test_shapes_of_the_nrel_5mw_blade_are_the_published_ones_and_more_so_without
         assert plain[name] < twisted[name]
 
 
+@pytest.mark.slow
 @real
 def test_flap_and_edge_of_the_iea_15mw_blade_veer_near_0_8_hz() -> None:
     file = Path(str(BLADES)) / "iea15" / "IEA-15-240-RWT_ElastoDyn_blade.dat"

@@ -94,6 +94,7 @@ def test_four_bar(cut: str) -> None:
     assert len(linear.partition.redundant) == 3
 
 
+@pytest.mark.slow
 def test_driven_slider_crank_with_a_damped_spring_between_points() -> None:
     linear, *_ = assert_agreement(*slider_crank())
     assert linear.names

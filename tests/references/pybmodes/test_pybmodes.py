@@ -172,6 +172,7 @@ def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: st
         CODE.solve(blade, 1.0, 5, 2)
 
 
+@pytest.mark.slow
 def test_why_mass_centres_off_the_axis_are_declined(monkeypatch: pytest.MonkeyPatch) -> None:
     """Core agrees with the expected value of the reproducer, an independent method; pyBModes is off by 1.5 %.
 

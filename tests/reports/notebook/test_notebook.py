@@ -59,6 +59,7 @@ def test_a_plot_has_every_mode_asked_for() -> None:
         assert np.abs(np.asarray(line.get_ydata(), float)).max() == pytest.approx(1.0)
 
 
+@pytest.mark.slow
 def test_python_and_the_command_take_the_same_names_and_give_the_same_numbers(
     blade: southwell.Blade, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -92,6 +92,7 @@ def test_a_folder_that_cannot_be_written_is_told(
     assert err.count("\n") == 1
 
 
+@pytest.mark.slow
 def test_it_prints_tables_and_writes_figures_page_and_csv(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
@@ -315,6 +316,7 @@ def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:
     assert "campbell" in southwell("--help", capsys)[1]
 
 
+@pytest.mark.slow
 def test_the_report_of_one_blade_is_one_file(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Input, properties, conventions and results; figures are embedded."""
     status, shown, _ = southwell(f"campbell {beam} --rpm 0,100 --modes 2 --elements 6 --html -o {tmp_path}", capsys)

@@ -70,6 +70,7 @@ def test_without_pyarrow_there_is_a_hint_before_the_first_answer(
     assert [path.name for path in folder.iterdir()] == ["study.toml"]
 
 
+@pytest.mark.slow
 def test_a_speed_without_a_frequency_is_status_1_with_its_reason(
     capsys: pytest.CaptureFixture[str], folder: Path
 ) -> None:
@@ -145,6 +146,7 @@ def test_an_error_of_the_options_is_one_line(options: list[str], said: str, caps
     assert said in err
 
 
+@pytest.mark.slow
 def test_a_blade_file_is_in_the_folder_of_the_study(capsys: pytest.CaptureFixture[str], folder: Path) -> None:
     inner = folder / "inner"
     inner.mkdir()
