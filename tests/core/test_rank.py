@@ -28,3 +28,22 @@ def test_a_small_singular_value_is_zero_only_if_errors_explain_it(least: float, 
     ranking = rank.ranked(A, error=np.full(12, 1e-8))
     np.testing.assert_allclose(A @ ranking.null, 0.0, atol=1e-15)
     np.testing.assert_allclose(ranking.left_null.T @ A, 0.0, atol=1e-15)
+
+
+@pytest.mark.parametrize("unit", [1e-6, 1.0, 1e6])
+def test_the_rank_does_not_depend_on_the_unit(unit: float) -> None:
+    for least, expected in ((10 * rank.TOLERANCE, 2), (0.1 * rank.TOLERANCE, 1)):
+        assert rank.ranked(unit * np.diag([1.0, least])).rank == expected
+
+
+def test_null_spaces_are_those_of_the_matrix_in_its_own_units() -> None:
+    A = np.array([[1e3, 2e3, 3e3], [2.0, 4.0, 6.0], [1e-3, 0.0, 1e-3]])
+    ranking = rank.ranked(A, np.array([1e3, 1.0, 1e-3]), np.array([1.0, 2.0, 0.5]))
+    assert ranking.rank == 2
+    np.testing.assert_allclose(A @ ranking.null, 0.0, atol=1e-12)
+    np.testing.assert_allclose(ranking.left_null.T @ A, 0.0, atol=1e-12)
+
+
+def test_of_equal_columns_the_last_is_a_pivot() -> None:
+    chosen, others = rank.pivots(np.array([[1.0, 1.0, 0.0, 1.0], [0.0, 0.0, 1.0, 0.0]]))
+    assert (chosen.tolist(), others.tolist()) == ([2, 3], [0, 1])

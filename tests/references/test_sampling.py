@@ -34,3 +34,11 @@ def test_engineering_properties_are_those_of_the_matrices() -> None:
     np.testing.assert_allclose(sections.EI_y, WEIGHTS @ [7.0, 5.0, 4.0], atol=1e-14)
     np.testing.assert_allclose(sections.I_y, WEIGHTS @ [0.2, 0.1, 0.3], atol=1e-14)
     np.testing.assert_allclose(sections.twist, WEIGHTS @ BLADE.twist, atol=1e-15)
+
+
+def test_gauss_points_of_each_interval() -> None:
+    """Two points at 1/√3 of half the interval from its middle, ascending, each with half its length as weight."""
+    at, weight = sampling.points([0.0, 2.0, 3.0], 2)
+    off = 1.0 / np.sqrt(3.0)
+    np.testing.assert_allclose(at, [[1.0 - off, 1.0 + off], [2.5 - off / 2, 2.5 + off / 2]], atol=1e-15)
+    np.testing.assert_allclose(weight, [[1.0, 1.0], [0.5, 0.5]], atol=1e-15)
