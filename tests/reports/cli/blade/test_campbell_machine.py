@@ -26,6 +26,7 @@ def test_a_deck_becomes_a_diagram_of_the_turbine(tmp_path: Path, capsys: pytest.
     assert (status, err) == (1, "")  # margins are violated
     assert shown.startswith("small.fst: the whole turbine on rigid ground")
     assert "not used: DTTorDmp" in shown
+    assert "not used: TwrFADmp(1)" in shown
     page = (out / "campbell.md").read_text()
     for name in ("1st tower fore-aft", "1st edge backward whirl", "Crossings", "DTTorDmp"):
         assert name in page

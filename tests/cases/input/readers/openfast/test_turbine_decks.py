@@ -66,7 +66,8 @@ def test_a_deck_is_a_turbine(tmp_path: Path) -> None:
     )
     assert result.nacelle[3, 3] == pytest.approx(20000.0)  # about the yaw axis, as given
     unused = " ".join(str(u) for u in read.source.unused)
-    assert "DTTorDmp" in unused
+    for damping in ("DTTorDmp", "TwrFADmp"):  # stated, each in one line
+        assert [str(u).endswith(": modes are undamped") for u in read.source.unused if damping in u.name] == [True]
     assert "PtfmMass" not in unused
 
 
