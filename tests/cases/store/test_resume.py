@@ -3,7 +3,6 @@
 import os
 import resource
 import shutil
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -97,15 +96,10 @@ def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(
     out.mkdir()
     earlier = b'{"kind":"plan","columns":[]}\n'
     (out / RESULTS).write_bytes(earlier)
-    first = killing.start(tmp_path)
-    until = monotonic() + 120
-    while not (out / PARTIAL).exists():
-        assert monotonic() < until
-    status, shown, err = killing.ended(killing.start(tmp_path))
+    with unfinished.locked(out):
+        status, shown, err = killing.ended(killing.start(tmp_path))
     assert (status, shown, err.count("\n")) == (2, "", 1)
     assert "--out out: another run is writing in this folder" in err
-    os.kill(first.pid, signal.SIGKILL)
-    first.communicate()
     assert (out / RESULTS).read_bytes() == earlier
 
 
