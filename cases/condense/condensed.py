@@ -21,7 +21,7 @@ from ..input.names import Name
 
 Array = NDArray[np.float64]
 
-CHANGED = "was the file edited? condense again"
+CHANGED = "condense again if the file was edited"
 
 
 @dataclass(frozen=True)

@@ -154,7 +154,7 @@ def _named(
         spec = f"{len(place)} nodes with {len(listed)} each are {len(pairs)}"
     if len(pairs) != rows:
         raise CaseError(
-            f"{path}: {field}freedoms: {spec}, {matrix.name} has {rows} rows: of another model, or constrained?"
+            f"{path}: {field}freedoms: {spec}, {matrix.name} has {rows} rows: both must be of the same unconstrained model"
         )
     return exported.labelled(matrix.name, matrix.matrix, pairs)
 

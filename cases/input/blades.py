@@ -251,9 +251,7 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
             except ValueError:
                 raise CaseError(f"{where}: {header[j]}: {cell!r} is not a number: correct it") from None
             if not np.isfinite(out[i, j]):
-                raise CaseError(
-                    f"{where}: {header[j]}: {cell}: not a finite number; a gap in the table? give every value"
-                )
+                raise CaseError(f"{where}: {header[j]}: {cell}: not a finite number: fill gaps in the table")
     if len(out) < 2:
-        raise CaseError(f"{path}: rows: {len(out)}: at least two are needed (root and tip): truncated? add them")
+        raise CaseError(f"{path}: rows: {len(out)}: at least two are needed (root and tip): add them")
     return {column: out[:, j] for j, column in enumerate(header)}

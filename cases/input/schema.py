@@ -245,10 +245,10 @@ def speed_range(text: str) -> NDArray[np.float64]:
     if not (0 <= first <= last < math.inf and 0 < step < math.inf):
         raise ValueError(f"{text!r}: needs 0 ≤ first ≤ last and a step above 0, as in 0:30:5")
     if last > FASTEST:
-        raise ValueError(f"{text!r}: {last:g} is implausibly fast: another unit? give at most {FASTEST:g}")
+        raise ValueError(f"{text!r}: {last:g} is implausibly fast: check the unit, and give at most {FASTEST:g}")
     steps = (last - first) / step
     if steps > MOST_SPEEDS:
-        raise ValueError(f"{text!r}: {steps:.3g} steps: a step too short? give at most {MOST_SPEEDS}, as in 0:30:5")
+        raise ValueError(f"{text!r}: {steps:.3g} steps: give at most {MOST_SPEEDS}, as in 0:30:5")
     speeds = [first + step * k for k in range(math.floor(steps + 1e-9) + 1)]
     return np.array([*speeds, last] if last - speeds[-1] > 1e-9 * step else speeds)
 
@@ -274,7 +274,7 @@ def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.f
         raise CaseError(f"{path}: speeds.{unit}: empty: no speeds, nothing to solve; give at least one, 0 for rest")
     if speeds.max() > FASTEST:
         raise CaseError(
-            f"{path}: speeds.{unit}: {speeds.max():g}: implausibly fast: another unit? give at most {FASTEST:g}"
+            f"{path}: speeds.{unit}: {speeds.max():g}: implausibly fast: check the unit, and give at most {FASTEST:g}"
         )
     if (np.diff(speeds) <= 0).any():
         raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")

@@ -86,7 +86,7 @@ def finite(value: Any, path: str, field: str = "") -> None:
         for k, item in enumerate(value):
             finite(item, path, f"{field}[{k}]")
     elif isinstance(value, float) and not math.isfinite(value):
-        raise CaseError(f"{path}: {field}: {value}: not a finite number; a gap in the data? give a value")
+        raise CaseError(f"{path}: {field}: {value}: not a finite number: fill gaps in the data")
     elif isinstance(value, int | float) and abs(value) > MAX_NUMBER:
         shown = f"{value:.3g}" if isinstance(value, float) or abs(value) < 10**300 else "more than 300 digits"
         raise CaseError(f"{path}: {field}: {shown}: implausibly large; check the exponent")

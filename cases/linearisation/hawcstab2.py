@@ -118,8 +118,6 @@ def _numbers(path: Path) -> Array:
         if len(finite) != len(values):
             raise CaseError(f"{path}: line {k}: not a row of finite numbers: correct it")
         if rows and len(rows[0]) != len(finite):
-            raise CaseError(
-                f"{path}: line {k}: {len(finite)} numbers instead of {len(rows[0])}: cut short? give it whole"
-            )
+            raise CaseError(f"{path}: line {k}: {len(finite)} numbers instead of {len(rows[0])}: give the whole file")
         rows.append(finite)
     return np.array(rows)

@@ -97,7 +97,7 @@ def text(path: Path) -> str:
             with gzip.open(io.BytesIO(raw)) as packed:
                 raw = packed.read(LARGEST_DATA + 1)
         except (OSError, EOFError, zlib.error) as error:
-            raise CaseError(f"{path}: damaged gzip file: was it copied to the end? compress it again") from error
+            raise CaseError(f"{path}: damaged gzip file: copy or compress it again") from error
         if len(raw) > LARGEST_DATA:
             raise CaseError(f"{path}: larger than {LARGEST_DATA // MEGABYTE} MB when unpacked: is it the right file?")
     if b"\0" in raw:
@@ -143,8 +143,7 @@ def parsed(path: Path, content: str) -> LinFile:
     declared = fields.get("Number of continuous states", math.nan)
     if math.isfinite(declared) and declared != len(states):
         raise CaseError(
-            f"{path}: {len(states)} states in the table, {declared:g} in the header: was the table edited? give the file as "
-            "OpenFAST wrote it"
+            f"{path}: {len(states)} states in the table, {declared:g} in the header: give the file as OpenFAST wrote it"
         )
     rows = _matrix(path, lines, len(states))
     A = _numbers(path, rows)
@@ -214,7 +213,7 @@ def _table(path: Path, lines: list[str], start: int, overflowed: list[str]) -> t
         if not row:
             raise CaseError(
                 f"{path}: line {k + 1}: not a row of the table of states (number, operating point, T or F, order, "
-                "description): edited or cut short? give the file as OpenFAST wrote it"
+                "description): give the file as OpenFAST wrote it"
             )
         value = math.nan if "**" in row[2] else _number(row[2])
         if value is None or not (math.isfinite(value) or "**" in row[2]):
@@ -241,7 +240,7 @@ def _matrix(path: Path, lines: list[str], n: int) -> list[tuple[int, list[str]]]
         if at is not None:
             break
     else:
-        raise CaseError(f"{path}: no matrix A: was the file written to the end? give it whole")
+        raise CaseError(f"{path}: no matrix A: give the whole file")
     shape = _MATRIX.match(lines[at])
     if shape and "*" not in shape[2] + shape[3] and (shape[2], shape[3]) != (str(n), str(n)):
         raise CaseError(

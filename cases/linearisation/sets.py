@@ -18,9 +18,6 @@ Array = NDArray[np.float64]
 
 _NUMBERED = re.compile(r"(.*?)\.(\d+)((?:\.[A-Za-z]\w*)?)\.lin(?:\.gz)?", re.IGNORECASE)
 
-MAX_FILES = 2000
-"""Maximum number of files in one call."""
-
 
 @dataclass(frozen=True)
 class BladeGroup:

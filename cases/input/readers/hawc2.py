@@ -80,7 +80,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
     )
     rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
-    columns.need(rises, "r", r, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates")
+    columns.need(rises, "r", r, "not beyond the station before it: sort them and drop duplicates")
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     stiffness, mass = _stiffness(columns), _mass(columns)
@@ -196,9 +196,7 @@ def _mass(p: Table) -> Array:
     rotary[:, 4, 5] += m * y * z
     rotary[:, 5, 4] += m * y * z
     least = np.linalg.eigvalsh(rotary[:, 4:, 4:])[:, 0]
-    remedy = (
-        "less than the mass centre's distance from the elastic centre, about which it is: is it about another point?"
-    )
+    remedy = "less than the mass centre's distance from the elastic centre, about which it must be given"
     p.need(least >= -1e-9 * np.abs(rotary[:, 4:, 4:]).max(), "ri_x, ri_y", p["ri_y"], remedy)
     rotary[:, 3, 3] = rotary[:, 4, 4] + rotary[:, 5, 5]
     rotary[:, range(3), range(3)] = m[:, None]

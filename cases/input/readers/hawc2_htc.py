@@ -172,7 +172,7 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     for count in (c for c in body if c.words[0] == "nsec"):
         if number(count.words[-1]) != len(c2):
             raise CaseError(
-                f"{count.at}: nsec: {count.words[-1]}: c2_def has {len(c2)} sections: one lost? correct either"
+                f"{count.at}: nsec: {count.words[-1]}: c2_def has {len(c2)} sections: make the numbers equal"
             )
     if len(c2) < 2:
         raise CaseError(f"{sections[0].at}: 1 section: c2_def needs at least a root and a tip")
@@ -183,7 +183,7 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     if len(falls):
         k = int(falls[0])
         raise CaseError(
-            f"{sections[k].at}: sec: z = {c2[k, 2]:g} m: not beyond the one before: a duplicate or out of order? sort them"
+            f"{sections[k].at}: sec: z = {c2[k, 2]:g} m: not beyond the one before: sort them and drop duplicates"
         )
     spline = Akima1DInterpolator(c2[:, 2], c2)
     z = np.unique(np.concatenate([np.linspace(0, c2[-1, 2], FINE), c2[:, 2]]))

@@ -72,7 +72,7 @@ def fault(matrix: Array) -> str | None:
     d = np.diag(matrix)
     if (d <= 0).any():
         i = int(np.argmax(d <= 0))
-        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
+        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive: check its sign and the order of the rows"
     scale = np.sqrt(d)
     with np.errstate(over="ignore"):
         scaled = matrix / scale[:, None] / scale  # np.outer(d, d) may underflow
@@ -82,11 +82,11 @@ def fault(matrix: Array) -> str | None:
     if abs(scaled[i, j] - scaled[j, i]) > 1e-3:
         return (
             f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
-            "it must be symmetric; a digit lost? correct one"
+            "it must be symmetric: make both entries equal"
         )
     least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
     if least <= 0:
-        return f"not positive definite (least scaled eigenvalue {least:.2g}): a coupling too large? check the entries"
+        return f"not positive definite (least scaled eigenvalue {least:.2g}): check the couplings"
     return None
 
 
@@ -96,12 +96,12 @@ def mass_fault(matrix: Array) -> str | None:
     bad = np.where(np.arange(6) < 3, d <= 0, d < 0)
     if bad.any():
         i = int(np.argmax(bad))
-        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive; wrong sign, or rows shifted? correct it"
+        return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive: check its sign and the order of the rows"
     scale = np.sqrt(np.outer(d, d)) + max(1e-9 * d[0], np.finfo(float).tiny)
     i, j = np.unravel_index((np.abs(matrix - matrix.T) / scale).argmax(), (6, 6))
     if abs(matrix[i, j] - matrix[j, i]) > 1e-3 * scale[i, j]:
         return (
             f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
-            "it must be symmetric; a sign or digit lost? correct one"
+            "it must be symmetric: make both entries equal"
         )
     return None

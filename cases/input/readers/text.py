@@ -88,7 +88,7 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
         CaseError: if there are fewer or more numbers, or one is not finite.
     """
     if k >= len(text.lines):
-        raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: truncated? give it whole")
+        raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: give the whole file")
     numbers, words = leading(text.lines[k]), tokens(text.lines[k])
     if len(numbers) != len(columns):
         rest = words[len(numbers) :]
@@ -105,7 +105,7 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
         )
     for name, value, written in zip(columns, numbers, words, strict=False):
         if not math.isfinite(value):
-            raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number; a gap in the data? give a value")
+            raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number: fill gaps in the data")
         if not believable(value):
             raise CaseError(f"{text.at(k)}: {name}: {written}: implausibly large; check the exponent")
     return numbers
@@ -145,7 +145,7 @@ class Table:
         """
         for name in names:
             good = self[name] >= 0 if zero else self[name] > 0
-            self.need(good, name, self[name], "it must be positive; wrong sign or column? correct it")
+            self.need(good, name, self[name], "it must be positive: check its sign and column")
 
 
 def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
@@ -160,7 +160,7 @@ def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
             k += 1
         if k >= len(text.lines) or not leading(text.lines[k]):
             raise CaseError(
-                f"{text.at(k)}: the table ends after {len(rows)} of {count} rows: truncated? give all, or correct the count"
+                f"{text.at(k)}: the table ends after {len(rows)} of {count} rows: give all rows, or correct the count"
             )
         rows.append(row(text, k, columns))
         lines.append(k)
@@ -188,9 +188,7 @@ def fractions(sections: Table, name: str) -> Array:
     ends[0], ends[-1] = eta[0] == 0, eta[-1] == 1
     sections.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")
     rises = np.concatenate([[True], np.diff(eta) > ROUNDING])
-    sections.need(
-        rises, name, eta, "not beyond the station before it: a duplicate or out of order? sort, drop duplicates"
-    )
+    sections.need(rises, name, eta, "not beyond the station before it: sort them and drop duplicates")
     return eta
 
 

@@ -161,9 +161,7 @@ def _grid(values_on_grid: Field) -> Array:
             raise CaseError(f"{field.item(k)}: {grid[k]:g}: fractions of the length: begin at 0 and end at 1")
     if (np.diff(grid) <= 0).any():
         k = int(np.argmax(np.diff(grid) <= 0)) + 1
-        raise CaseError(
-            f"{field.item(k)}: {grid[k]:g}: not beyond the one before: a duplicate or out of order? sort them"
-        )
+        raise CaseError(f"{field.item(k)}: {grid[k]:g}: not beyond the one before: sort them and drop duplicates")
     return grid
 
 

@@ -97,7 +97,7 @@ class Field:
         for row in rows:
             count = len(row._items())
             if count != width:
-                raise CaseError(f"{row.at}: {count} numbers instead of {width}: one missing or too many? correct it")
+                raise CaseError(f"{row.at}: {count} numbers instead of {width}: check the row")
         return np.array([row.numbers() for row in rows]).reshape(-1, width)
 
     def parts(self) -> "list[Field]":
@@ -121,7 +121,7 @@ class Field:
         if isinstance(self.node, yaml.ScalarNode) and self.node.tag == "!include":
             raise CaseError(f"{self.at}: is in another file ({self.node.value}): put its text here")
         if not isinstance(self.node, yaml.MappingNode):
-            raise CaseError(f"{self.at}: keys are needed: indented wrongly? correct it")
+            raise CaseError(f"{self.at}: keys are needed: check the indentation")
         return {str(key.value): value for key, value in self.node.value}
 
 
@@ -180,7 +180,7 @@ def _number(text: Text, node: yaml.Node, name: str) -> float:
     said = node.value if isinstance(node, yaml.ScalarNode) else "a list or keys"
     value = number(said)
     if value is None or not believable(value):
-        raise CaseError(f"{_at(text, node, name)}: {said!r} is not a finite number: a gap in the data? correct it")
+        raise CaseError(f"{_at(text, node, name)}: {said!r} is not a finite number: fill gaps in the data")
     return value
 
 

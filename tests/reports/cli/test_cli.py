@@ -398,7 +398,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
     [
         ("modes park-cantilever --modes 1.5", "--modes: '1.5' is not a whole number"),
         ("modes park-cantilever --elements 100000000", "--elements. Must be <= 20000"),
-        ("modes park-cantilever --rpm 0:30:1e-9", "steps: a step too short"),
+        ("modes park-cantilever --rpm 0:30:1e-9", "steps: give at most"),
         ("modes park-cantilever --rpm 0:1e9:1e8", "implausibly fast"),
         ("cases all", "all: unexpected argument"),
         ("verify park-cantilever --codes :CODE", "no module is named"),

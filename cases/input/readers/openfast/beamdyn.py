@@ -153,7 +153,7 @@ def _points(main: Text) -> Table:
             "the first key point is the root; begin at 0, 0, 0 and put the hub's radius into the main file",
         )
     rises = np.concatenate([[True], np.diff(z) > ROUNDING * np.abs(z).max()])
-    points.need(rises, "kp_zr", z, "not beyond the key point before it: a duplicate or out of order? correct it")
+    points.need(rises, "kp_zr", z, "not beyond the key point before it: sort them and drop duplicates")
     if count < 2:
         raise CaseError(f"{main.at(points.lines[0])}: 1 key point: a blade needs at least a root and a tip")
     return points
@@ -206,13 +206,13 @@ def _next(text: Text, k: int, i: int, count: int) -> int:
     while k < len(text.lines) and text.blank(k):
         k += 1
     if k >= len(text.lines):
-        raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: truncated? give it whole")
+        raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: give the whole file")
     return k
 
 
 def _row(text: Text, k: int, what: str, j: int, i: int, count: int) -> list[float]:
     if k >= len(text.lines):
-        raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: truncated? give it whole")
+        raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: give the whole file")
     return row(text, k, tuple(f"{what} {j + 1}{c}" for c in range(1, 7)))
 
 

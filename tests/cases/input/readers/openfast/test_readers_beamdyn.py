@@ -157,7 +157,7 @@ BAD = {
         BLADE,
         "3   station_total",
         "4   station_total",
-        r"blade.dat: line 55: .*within station 4 of 4: truncated\?",
+        r"blade.dat: line 55: .*within station 4 of 4: give the whole file",
     ),
     "too few": (BLADE, "3   station_total", "2   station_total", r"another station after the 2 announced"),
     "no count": (BLADE, "station_total", "stations", r"station_total: missing"),
@@ -180,7 +180,7 @@ BAD = {
         BLADE,
         "  0.400000",
         "  0.000000",
-        r"line 26: station_eta: 0: not beyond the station before it: a duplicate",
+        r"line 26: station_eta: 0: not beyond the station before it: sort them",
     ),
     "end": (BLADE, "  1.000000\n", "  0.900000\n", r"line 41: station_eta: 0.9: .*begin at 0 and end at 1"),
     "key points": (
@@ -207,7 +207,7 @@ def test_a_truncated_file(tmp_path: Path) -> None:
     main = edited(tmp_path, BLADE, "mu1", "mu1")
     path, text = tmp_path / BLADE.name, BLADE.read_text()
     path.write_text(text[: text.index("  1.000000\n") + 300])
-    with pytest.raises(CaseError, match=r"beamdyn_blade.dat: line 4\d: .*(numbers instead of 6|truncated\?)"):
+    with pytest.raises(CaseError, match=r"beamdyn_blade.dat: line 4\d: .*(numbers instead of 6|give the whole file)"):
         readers.read(main)
 
 
