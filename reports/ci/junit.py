@@ -97,23 +97,22 @@ def _test(suite: Element, case: str, name: str) -> Element:
 
 
 def _judge(test: Element, cell: Cell, finding: str) -> None:
-    size = summary.plus_minus(cell)
-    said = ": ".join(part for part in (cell.verdict, size, cell.reason) if part)
+    said = ": ".join(part for part in (cell.verdict, summary.plus_minus(cell), cell.reason) if part)
     if finding:
         _failed(test, finding.partition(":")[0], f"{finding}; {said}")
-    elif cell.verdict in summary.BAD:
-        _failed(test, cell.verdict, said)
-    elif cell.verdict in SKIPPED:
-        SubElement(test, "skipped", message=_text(said))
     else:
-        SubElement(test, "system-out").text = _text(said)
+        _outcome(test, cell.verdict, said, cell.verdict in summary.BAD)
 
 
 def _check(test: Element, check: PropertyCheck) -> None:
     said = ": ".join(part for part in (check.verdict, check.reason) if part)
-    if check.verdict == "fail":
-        _failed(test, check.verdict, said)
-    elif check.verdict in SKIPPED:
+    _outcome(test, check.verdict, said, check.verdict == "fail")
+
+
+def _outcome(test: Element, verdict: str, said: str, failed: bool) -> None:
+    if failed:
+        _failed(test, verdict, said)
+    elif verdict in SKIPPED:
         SubElement(test, "skipped", message=_text(said))
     else:
         SubElement(test, "system-out").text = _text(said)

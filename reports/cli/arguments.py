@@ -1,6 +1,8 @@
 """Types of arguments, and access to the results of a run, for several commands."""
 
 import os
+import shlex
+import sys
 from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
@@ -10,13 +12,11 @@ from cyclopts import Parameter, Token
 from cyclopts.validators import Number
 
 from ...cases.input.errors import CaseError
-from ...cases.input.schema import speed_range
 from ...cases.input.writing import writable
 from ...cases.judge.results import Run
 from ...cases.run.cluster import SLURM
 from ...cases.store import results_file, unfinished
 from ...cases.store.results_file import RESULTS
-from ..shared.units import RAD_S, RPM, Units
 from .errors import IncompleteError, UsageError
 
 
@@ -115,18 +115,6 @@ def cluster_workers(workers: int | None, scheduler: str | None) -> int | None:
     return workers
 
 
-def given_speeds(omega: str | None, rpm: str | None) -> tuple[Sequence[float] | None, Units | None]:
-    """Rotor speeds in rad/s from ``--omega`` or ``--rpm``, and their units; None if neither is given.
-
-    Raises:
-        UsageError: if both are given, or the text is not a range of speeds.
-    """
-    if omega is not None and rpm is not None:
-        raise UsageError(f"--omega {omega} and --rpm {rpm}: the speed is given twice: give one of them")
-    if omega is None and rpm is None:
-        return None, None
-    option, text, units = ("--omega", omega, RAD_S) if omega is not None else ("--rpm", rpm, RPM)
-    try:
-        return (speed_range(text or "") / units.speeds).tolist(), units
-    except ValueError as error:
-        raise UsageError(f"{option}: {error}") from error
+def typed() -> str:
+    """The command as typed."""
+    return shlex.join(["southwell", *sys.argv[1:]])

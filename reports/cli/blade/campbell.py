@@ -2,8 +2,6 @@
 
 import errno
 import os
-import shlex
-import sys
 from collections.abc import Sequence
 from concurrent.futures import Executor
 from contextlib import ExitStack
@@ -40,7 +38,7 @@ from ...shared import not_used
 from ...shared.console import Display, output
 from ...shared.paths import file_name
 from ...shared.units import RPM, Units
-from ..arguments import Accuracy, Changes, Elements, NumberOfModes, Workers
+from ..arguments import Accuracy, Changes, Elements, NumberOfModes, Workers, typed
 from ..errors import UsageError
 from ..mounting import Mounting
 from ..verify_output import Progressing
@@ -210,10 +208,9 @@ def command(
         doubts = interpolation.warnings(subject.blade, modes)
         _show(diagram, units, subject, extra, doubts)
         kept &= tables.margins_kept(diagram)
-        line = shlex.join(["southwell", *sys.argv[1:]])
         origin = Origin((*about, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))
         with writable(f"--out {out}"):
-            written = page.write(diagram, folder, units, line, origin, extra, files)
+            written = page.write(diagram, folder, units, typed(), origin, extra, files)
             if html:
                 written = (*written, as_html.write(written[0]))
                 if interactive.installed():

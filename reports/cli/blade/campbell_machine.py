@@ -1,7 +1,5 @@
 """``southwell campbell`` of a whole turbine."""
 
-import shlex
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -19,6 +17,7 @@ from ...documents import html as as_html
 from ...shared import not_used
 from ...shared.console import output
 from ...shared.units import RPM, Units
+from ..arguments import typed
 
 SPEEDS = 31
 """Number of speeds by default."""
@@ -81,10 +80,9 @@ def run(
     for line in about[1:]:
         console.print(line, style="dim", markup=False)
     not_used.show(read.source.unused, console)
-    command = shlex.join(["southwell", *sys.argv[1:]])
     origin = Origin(about, read.source.files, not_used.lines(read.source.unused))
     with writable(f"--out {out}"):
-        written = pages.write(diagram, out, units, command, origin, about[:1])
+        written = pages.write(diagram, out, units, typed(), origin, about[:1])
         if html:
             written = (*written, as_html.write(written[0]))
             if interactive.installed():

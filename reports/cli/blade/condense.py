@@ -1,14 +1,11 @@
 """``southwell condense``: condenses finite element matrices to a compressed model."""
 
-import shlex
-import sys
 from pathlib import Path
 from typing import Annotated
 
 from cyclopts import Parameter
 
 from ....cases.condense import condensed, condensing
-from ....cases.condense.condensed import Condensed
 from ....cases.input import atomic
 from ....cases.input.errors import CaseError
 from ....cases.input.writing import writable
@@ -16,7 +13,7 @@ from ...condense import page
 from ...shared.console import output
 from ...shared.statuses import PASSED
 from ...shared.units import RAD_S
-from ..arguments import NumberOfModes
+from ..arguments import NumberOfModes, typed
 from . import campbell_options
 
 FILE, SEGMENTS = page.FILE, "segments.json"
@@ -62,25 +59,11 @@ def command(
         spec = condensing.condense(path)
         blade = spec.blade
     solved = [(speed, condensed.modes(blade, speed, modes, allow_large_strain)) for speed in speeds]
-    text = page.own(blade, solved, units, spec, _line())
-    folder = _folder(out)
-    _write(folder, text, blade)
-    output().print(text, markup=False, soft_wrap=True)
-    output().print(f"{folder}: {FILE}, {SEGMENTS}", markup=False, soft_wrap=True)
-    return PASSED
-
-
-def _folder(out: Path) -> Path:
+    text = page.own(blade, solved, units, spec, typed())
     with writable(f"--out {out}"):
         out.mkdir(parents=True, exist_ok=True)
-    return out
-
-
-def _write(folder: Path, text: str, blade: Condensed) -> None:
-    with writable(f"--out {folder}"):
-        condensed.write(folder / SEGMENTS, blade)
-        atomic.write(folder / FILE, text)
-
-
-def _line() -> str:
-    return shlex.join(["southwell", *sys.argv[1:]])
+        condensed.write(out / SEGMENTS, blade)
+        atomic.write(out / FILE, text)
+    output().print(text, markup=False, soft_wrap=True)
+    output().print(f"{out}: {FILE}, {SEGMENTS}", markup=False, soft_wrap=True)
+    return PASSED

@@ -21,11 +21,11 @@ from ...shared.console import output
 from ...shared.statuses import PASSED
 from ...shared.units import Units
 from ...verification import terminal
-from ..arguments import Accuracy, Changes, Elements, NumberOfModes, given_speeds
+from ..arguments import Accuracy, Changes, Elements, NumberOfModes
 from ..errors import UsageError
 from ..mounting import Mounting
+from . import campbell_options, subjects
 from . import mechanism_text as answer
-from . import subjects
 from . import tower as tower_text
 
 
@@ -90,7 +90,7 @@ def modes(
             mounting=mounting is not None and mounting != Mounting(),
         )
         return PASSED
-    speeds, units = given_speeds(omega, rpm)
+    speeds, units = campbell_options.speeds(rpm, omega) or (None, None)
     rows: list[dict[str, object]] = []
     mount, given = (mounting or Mounting()).mount(), [parse(text) for text in changes]
     if json and against:

@@ -24,10 +24,9 @@ from ...shared import not_used
 from ...shared.console import output
 from ...shared.paths import file_name
 from ...shared.units import Units
-from ..arguments import given_speeds
 from ..errors import UsageError
 from ..mounting import Mounting
-from . import root_tables
+from . import campbell_options, root_tables
 from .subjects import subjects as find_subjects
 
 Array = NDArray[np.float64]
@@ -64,7 +63,7 @@ def command(
     omega
         Rotor speeds in rad/s, in the same form.
     """
-    speeds, units = given_speeds(omega, rpm)
+    speeds, units = campbell_options.speeds(rpm, omega) or (None, None)
     if speeds is not None and not steady:
         raise UsageError("--steady: missing: show uses speeds for the loads at the root: add --steady")
     subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=steady)
