@@ -191,3 +191,8 @@ def test_an_unknown_table_is_an_error_that_suggests_the_nearest() -> None:
         published.load("park2011")
     with pytest.raises(TableError, match="give one of bir2010, bmodes3"):
         published.load("xyz")
+
+
+def test_a_table_in_a_file_goes_by_its_stem() -> None:
+    assert published.label("tables/rig.toml") == "rig"
+    assert published.label("park2010") == "park2010"
