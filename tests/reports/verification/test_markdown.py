@@ -350,3 +350,9 @@ def test_a_code_without_an_answer_never_looks_like_a_pass(tmp_path: Path) -> Non
     assert summary.worst_verdict(run.cells) == "fail"
     assert "✘ fail" in matrix_report.heat(run)
     assert "crashed" in matrix_report.write(run, tmp_path).read_text()
+
+
+def test_the_largest_difference_counts_whatever_its_sign() -> None:
+    small, large = samples.cell(difference=1e-4), samples.cell(difference=-2e-4)
+    assert summary.largest([small, large, samples.empty("fail", "crashed")]) is large
+    assert summary.largest([samples.empty("fail", "crashed")]) is None
