@@ -330,7 +330,7 @@ def test_codes_and_negative_controls(tab: Any, site: Path) -> None:
 
 def test_the_history(tab: Any, site: Path) -> None:
     tab.goto((site / "history.html").as_uri())
-    assert "cut short: line 8 of the file" in tab.locator("main").inner_text()
+    assert "truncated and left out: line 8 of the file" in tab.locator("main").inner_text()
     assert tab.locator("#runs tbody tr").count() == 7
     steps = tab.locator("#steps tbody tr").all_inner_texts()
     assert [re.split(r"\s*\t\s*", s)[1] for s in steps] == ["Southwell", "scikit-fem"]
