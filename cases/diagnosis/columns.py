@@ -34,12 +34,12 @@ def diagnosed(blade: Blade, cells: Sequence[Cell]) -> Diagnosed:
         given[speeds.index(cell.omega), names.index(cell.name)] = cell.value
     uncertainties = [cell.uncertainty for cell in answered if cell.uncertainty is not None]
     uncertainty = float(np.clip(np.median(uncertainties), LEAST, MOST)) if uncertainties else LEAST
-    found = diagnose(blade, speeds, given, names, by_shape=True, uncertainty=uncertainty)
+    diagnosis = diagnose(blade, speeds, given, names, by_shape=True, uncertainty=uncertainty)
     return Diagnosed(
         case=cells[0].case,
         code=cells[0].code,
-        known=found.cause is not None or bool(found.arithmetic),
-        sentence=found.sentence,
-        causes=cause_lines(found),
-        modes=mode_lines(found),
+        known=diagnosis.cause is not None or bool(diagnosis.arithmetic),
+        sentence=diagnosis.sentence,
+        causes=cause_lines(diagnosis),
+        modes=mode_lines(diagnosis),
     )

@@ -158,8 +158,8 @@ def _rows(omega: Array, given: Array) -> list[int]:
     rows = np.flatnonzero(np.isfinite(given).any(1))
     rows = rows[np.argsort(omega[rows], kind="stable")]
     if len(rows) > MAX_SPEEDS:
-        wanted = np.linspace(omega[rows[0]], omega[rows[-1]], MAX_SPEEDS)
-        rows = rows[sorted({int(np.abs(omega[rows] - speed).argmin()) for speed in wanted})]
+        targets = np.linspace(omega[rows[0]], omega[rows[-1]], MAX_SPEEDS)
+        rows = rows[sorted({int(np.abs(omega[rows] - speed).argmin()) for speed in targets})]
     return rows.tolist()
 
 
@@ -198,9 +198,9 @@ def percent(value: float) -> str:
     return f"{np.format_float_positional(100.0 * value, precision=2, fractional=False, trim='-')} %"
 
 
-def cause_lines(found: Diagnosis) -> tuple[str, ...]:
+def cause_lines(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The most probable causes, one line each: what they explain, what remains, and the probability by chance."""
-    return tuple(_cause(one) for one in found.causes[:SHOWN] if one.chance <= LIKELY)
+    return tuple(_cause(one) for one in diagnosis.causes[:SHOWN] if one.chance <= LIKELY)
 
 
 def _cause(cause: Cause) -> str:
@@ -209,9 +209,9 @@ def _cause(cause: Cause) -> str:
     return f"{described(cause.changes)}: explains {explained}, remains {percent(cause.remains)}{chance}"
 
 
-def mode_lines(found: Diagnosis) -> tuple[str, ...]:
+def mode_lines(diagnosis: Diagnosis) -> tuple[str, ...]:
     """One line for each mode: the difference at rest, and both slopes."""
-    return tuple(f"{one.mode}: {_split(one)}" for one in found.modes if np.isfinite(one.offset))
+    return tuple(f"{one.mode}: {_split(one)}" for one in diagnosis.modes if np.isfinite(one.offset))
 
 
 def _split(one: ModeSplit) -> str:

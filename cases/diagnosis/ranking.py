@@ -153,28 +153,28 @@ class _Search:
         """Effects of the hypotheses without a factor that change a frequency, and the names of those that change none."""
         visible: dict[str, Array] = {}
         invisible: list[str] = []
-        known = np.isfinite(self.difference)
+        finite = np.isfinite(self.difference)
         for name, one in self.problem.hypotheses.items():
             if one.fitted:
                 continue
             prediction = effect(self.problem, ((name, 1.0),))
-            if not np.isfinite(prediction[known]).all():
+            if not np.isfinite(prediction[finite]).all():
                 continue
             if not self.is_visible(prediction):
                 invisible.append(name)
-            elif not any(np.abs((prediction - other)[known]).max() <= EQUAL for other in visible.values()):
+            elif not any(np.abs((prediction - other)[finite]).max() <= EQUAL for other in visible.values()):
                 visible[name] = prediction
         return visible, invisible
 
     def cause(self, changes: tuple[Change, ...], kinds: int, fitted: int = 0) -> Cause:
         """What one hypothesis, or several together, explain."""
         prediction = effect(self.problem, changes)
-        known = np.isfinite(self.difference)
-        rest = (self.difference - prediction)[known]
-        size = float((self.difference[known] ** 2).sum())
+        finite = np.isfinite(self.difference)
+        rest = (self.difference - prediction)[finite]
+        size = float((self.difference[finite] ** 2).sum())
         if not np.isfinite(rest).all() or not size:
             return Cause(changes, 0.0, np.inf, np.inf, 1.0, prediction)
-        least = known.sum() * self.uncertainty**2
+        least = finite.sum() * self.uncertainty**2
         share = float(max((rest**2).sum(), least)) / size
         return Cause(
             changes=changes,
@@ -192,9 +192,9 @@ class _Search:
 
     def fitted(self, changes: tuple[Change, ...], slopes: dict[str, Array], tried: int) -> list[Cause]:
         """Causes with a factor: those that explain most to first order, with the factor refined."""
-        known = np.isfinite(self.difference)
-        D = self.difference[known]
-        squares = {name: _remainder(D, slope[known]) for name, slope in slopes.items()}
+        finite = np.isfinite(self.difference)
+        D = self.difference[finite]
+        squares = {name: _remainder(D, slope[finite]) for name, slope in slopes.items()}
         best = sorted(squares, key=lambda name: squares[name])[:tried]
         chosen = best[:1] + [name for name in best[1:] if self._is_promising(squares[name], len(slopes), 1)]
         return [self._refined(changes, name, slopes[name], len(slopes)) for name in chosen]
@@ -205,13 +205,13 @@ class _Search:
 
     def _refined(self, changes: tuple[Change, ...], name: str, slope: Array, kinds: int) -> Cause:
         """The factor by Gauss–Newton steps, with the secant from the last factor as slope."""
-        known = np.isfinite(self.difference)
+        finite = np.isfinite(self.difference)
         a, best = 0.0, Cause(changes, 0.0, np.inf, np.inf, 1.0, slope)
         begin = effect(self.problem, changes) if changes else np.zeros_like(slope)
         prediction = begin
         for _ in range(FITS):
-            rest = (self.difference - prediction)[known]
-            a += float(rest @ slope[known] / (slope[known] @ slope[known]))
+            rest = (self.difference - prediction)[finite]
+            a += float(rest @ slope[finite] / (slope[finite] @ slope[finite]))
             if not 1e-6 < abs(a) <= np.log(MAX_FACTOR):
                 break
             one = self.cause((*changes, (name, float(np.exp(a)))), kinds, fitted=1)
@@ -223,17 +223,17 @@ class _Search:
 
     def pairs(self, single: dict[str, Array], slopes: dict[str, Array]) -> list[Cause]:
         """Pairs that explain most if their effects are added, solved together."""
-        known = np.isfinite(self.difference)
-        D = self.difference[known]
+        finite = np.isfinite(self.difference)
+        D = self.difference[finite]
         every = {
-            (a, b): float(((D - single[a][known] - single[b][known]) ** 2).sum()) for a, b in combinations(single, 2)
+            (a, b): float(((D - single[a][finite] - single[b][finite]) ** 2).sum()) for a, b in combinations(single, 2)
         }
         best = sorted(every, key=lambda names: every[names])[:TRIED_PAIRS]
         out = [
             self.cause(((a, 1.0), (b, 1.0)), len(every)) for a, b in best if self._is_promising(every[a, b], len(every))
         ]
         mixed = {
-            (name, factor): _remainder(D - prediction[known], slope[known])
+            (name, factor): _remainder(D - prediction[finite], slope[finite])
             for name, prediction in single.items()
             for factor, slope in slopes.items()
         }
@@ -244,9 +244,9 @@ class _Search:
 
     def is_tied(self, one: Cause, best: Cause) -> bool:
         """Whether the numbers do not tell a cause from the best: log likelihoods, with the best one's remainder as noise."""
-        known = np.isfinite(self.difference)
+        finite = np.isfinite(self.difference)
         variance = max(self.uncertainty, best.rms) ** 2
-        squares = [known.sum() * cause.rms**2 for cause in (one, best)]
+        squares = [finite.sum() * cause.rms**2 for cause in (one, best)]
         same_kind = len(one.changes) <= len(best.changes) and (_is_fixed(one) or not _is_fixed(best))
         return same_kind and (squares[0] - squares[1]) / (2.0 * variance) < LIKELIHOOD
 

@@ -113,8 +113,8 @@ def judged(control: Control, right: Sequence[Cell], wrong: Sequence[Cell]) -> Co
     bad = [c for c in wrong if c.verdict == "fail" and getattr(before.get(_key(c)), "verdict", "") != "fail"]
     if bad:
         changes = [c.difference for c in bad if c.difference is not None]
-        found = tuple(f"{c.case}, {c.code}, {c.name or 'no answer'}, {c.omega:g} rad/s: fail" for c in bad)
-        return replace(control, detected_by=found, change=max(changes, key=abs, default=None))
+        detections = tuple(f"{c.case}, {c.code}, {c.name or 'no answer'}, {c.omega:g} rad/s: fail" for c in bad)
+        return replace(control, detected_by=detections, change=max(changes, key=abs, default=None))
     pairs = [(before[_key(c)], c) for c in wrong if _key(c) in before]
     both = [both for a, b in pairs for both in ((a.reference, b.reference), (a.value, b.value))]
     moved = [abs(y / x - 1.0) for x, y in both if x and y]

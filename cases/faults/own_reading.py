@@ -98,9 +98,11 @@ def of_file(case: str, omega: float, file: BladeFile) -> list[Control]:
             out.append(replace(control, needs=f"a file that states the {fault.part}"))
             continue
         rows, _ = properties.of_reading(case, replace(file, blade=wrong), wrong)
-        known = {row.part for row in right if row.verdict == "fail"}
-        found = [row for row in rows if row.verdict == "fail" and row.part not in known]
-        out.append(replace(control, detected_by=tuple(f"{case}, second reading, {row.part}: fail" for row in found)))
+        failing = {row.part for row in right if row.verdict == "fail"}
+        detections = [row for row in rows if row.verdict == "fail" and row.part not in failing]
+        out.append(
+            replace(control, detected_by=tuple(f"{case}, second reading, {row.part}: fail" for row in detections))
+        )
     return out
 
 

@@ -87,14 +87,14 @@ def judge_set(each: AzimuthSet) -> JudgedSet:
     broken = any(finding.level == DEFECT and finding.name in STRUCTURAL_DEFECTS for finding in findings)
     A, frame = (each.A, ()) if broken else in_rotating_frame(each)
     findings += frame
-    found = spectrum(each, A)
+    averaged = spectrum(each, A)
     if not broken:
         findings += blades.equality(blades.differences(each), each)
-        findings += [*structure.generator(each, found), *structure.units(each, found)]
+        findings += [*structure.generator(each, averaged), *structure.units(each, averaged)]
     if not any(finding.level == DEFECT and finding.name != "truncated digits" for finding in findings):
-        findings += disagreement.agreement(each, A, found)
-    findings += structure.digits(each, found.modes)
-    modes, method = (found.modes, AVERAGED) if broken else _periodic(each, found)
+        findings += disagreement.agreement(each, A, averaged)
+    findings += structure.digits(each, averaged.modes)
+    modes, method = (averaged.modes, AVERAGED) if broken else _periodic(each, averaged)
     if not any(finding.level == DEFECT for finding in findings):
         findings += structure.damping(each, modes)
     return JudgedSet(each, modes, method, tuple(_once(by_level(findings))))
@@ -108,26 +108,28 @@ def _once(findings: Sequence[Finding]) -> Iterator[Finding]:
         seen.add(finding.name)
 
 
-def _periodic(each: AzimuthSet, found: Spectrum) -> tuple[tuple[Mode, ...], str]:
+def _periodic(each: AzimuthSet, averaged: Spectrum) -> tuple[tuple[Mode, ...], str]:
     """Floquet's exponents in place of the eigenvalues of the mean matrix, where the azimuths determine them."""
-    if each.blades != 3 or not found.modes or abs(each.omega) < azimuths.STANDSTILL:
-        return found.modes, AVERAGED
-    fit = floquet.interpolate(each.azimuths, found.matrices)
+    if each.blades != 3 or not averaged.modes or abs(each.omega) < azimuths.STANDSTILL:
+        return averaged.modes, AVERAGED
+    fit = floquet.interpolate(each.azimuths, averaged.matrices)
     if not fit.harmonics:
-        return found.modes, AVERAGED
-    near, adjoints, shapes = found.vectors
-    structural = np.array([mode.structural > 0.5 for mode in found.modes])
-    parts = found.matrices - found.matrices.mean(axis=0)
+        return averaged.modes, AVERAGED
+    near, adjoints, shapes = averaged.vectors
+    structural = np.array([mode.structural > 0.5 for mode in averaged.modes])
+    parts = averaged.matrices - averaged.matrices.mean(axis=0)
     estimate = floquet.second_order(parts, each.omega, (-3, 3), near, adjoints, shapes) / np.abs(near)
     if not structural.any() or estimate[structural].max() < MAX_PERIODIC / 2:
-        return found.modes, AVERAGED
+        return averaged.modes, AVERAGED
     values = floquet.exponents(fit, each.omega, near)
     change = np.abs(values - near) / np.abs(near)
     if change[structural].max() < MAX_PERIODIC:
-        return found.modes, AVERAGED
-    fewer = floquet.exponents(floquet.interpolate(each.azimuths, found.matrices, fit.harmonics - 1), each.omega, near)
+        return averaged.modes, AVERAGED
+    fewer = floquet.exponents(
+        floquet.interpolate(each.azimuths, averaged.matrices, fit.harmonics - 1), each.omega, near
+    )
     modes = tuple(
         replace(mode, eigenvalue=complex(value), uncertainty=float(np.hypot(mode.uncertainty, abs(value - other))))
-        for mode, value, other in zip(found.modes, values, fewer, strict=True)
+        for mode, value, other in zip(averaged.modes, values, fewer, strict=True)
     )
     return modes, FLOQUET

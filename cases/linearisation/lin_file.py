@@ -127,7 +127,7 @@ def parsed(path: Path, content: str) -> LinFile:
     overflowed: list[str] = []
     fields, unit = _header(lines, overflowed)
     tables = {
-        found[1]: k for k, line in enumerate(lines) if line.startswith("Order of ") and (found := _TABLE.match(line))
+        match[1]: k for k, line in enumerate(lines) if line.startswith("Order of ") and (match := _TABLE.match(line))
     }
     if "continuous states" not in tables:
         raise CaseError(
@@ -182,14 +182,14 @@ def _header(lines: list[str], overflowed: list[str]) -> tuple[dict[str, float], 
     for line in lines[:60]:
         if line.startswith("Order of "):
             break
-        found = re.fullmatch(r"\s+([A-Z][^:]*):\s+(\S+).*", line)
-        if found and "**" in found[2]:
-            overflowed.append(found[1])
-            out[found[1]] = math.nan
-        elif found and (value := _number(found[2])) is not None:
-            out[found[1]] = value
-            if found[1] == "Rotor Speed":
-                unit = 0.5 * 10.0 ** -len(found[2].partition(".")[2].rstrip("EeDd+-"))
+        match = re.fullmatch(r"\s+([A-Z][^:]*):\s+(\S+).*", line)
+        if match and "**" in match[2]:
+            overflowed.append(match[1])
+            out[match[1]] = math.nan
+        elif match and (value := _number(match[2])) is not None:
+            out[match[1]] = value
+            if match[1] == "Rotor Speed":
+                unit = 0.5 * 10.0 ** -len(match[2].partition(".")[2].rstrip("EeDd+-"))
     return out, unit
 
 
@@ -198,8 +198,8 @@ def _number(token: str) -> float | None:
         return float(token.lower().replace("d", "e"))
     except ValueError:
         # Fortran leaves out the E of an exponent with three digits
-        if found := re.fullmatch(r"([+-]?\d*\.\d*)([+-]\d{3})", token):
-            return float(f"{found[1]}e{found[2]}")
+        if match := re.fullmatch(r"([+-]?\d*\.\d*)([+-]\d{3})", token):
+            return float(f"{match[1]}e{match[2]}")
         return None
 
 
@@ -288,9 +288,9 @@ def _format(rows: list[tuple[int, list[str]]]) -> tuple[int, bool]:
     decimals, exponents = 0, False
     for _, row in rows:
         for token in (row[0], max(row, key=len)):
-            if found := _MANTISSA.fullmatch(token):
-                decimals = max(decimals, len(found[2]) - (found[1] in ("", "0") and float(token) != 0))
-                exponents = exponents or found[3] is not None
+            if match := _MANTISSA.fullmatch(token):
+                decimals = max(decimals, len(match[2]) - (match[1] in ("", "0") and float(token) != 0))
+                exponents = exponents or match[3] is not None
     return decimals, exponents
 
 

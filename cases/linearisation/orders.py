@@ -38,10 +38,10 @@ def order_lines(lines: Sequence[Line], where: str) -> tuple[Finding, ...]:
     """Rows whose frequencies are one multiple of the rotor speed at three or more operating points."""
     out = []
     for line in lines:
-        known = np.isfinite(line.frequencies) & (line.speeds > 0)
-        if np.count_nonzero(known) < 3 or np.ptp(np.log(line.speeds[known])) < np.log(MIN_RANGE):
+        valid = np.isfinite(line.frequencies) & (line.speeds > 0)
+        if np.count_nonzero(valid) < 3 or np.ptp(np.log(line.speeds[valid])) < np.log(MIN_RANGE):
             continue
-        ratio = line.frequencies[known] / line.speeds[known]
+        ratio = line.frequencies[valid] / line.speeds[valid]
         order = int(np.round(np.median(ratio)))
         if order >= 1 and np.abs(ratio / order - 1).max() < TOLERANCE:
             out.append(
@@ -49,7 +49,7 @@ def order_lines(lines: Sequence[Line], where: str) -> tuple[Finding, ...]:
                     "order line",
                     DEFECT,
                     where,
-                    f"{line.name} is {order} times the rotor speed at {np.count_nonzero(known)} operating points",
+                    f"{line.name} is {order} times the rotor speed at {np.count_nonzero(valid)} operating points",
                     f"it is the {order}P excitation and no mode: remove it",
                     float(order),
                 )

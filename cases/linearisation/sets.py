@@ -125,8 +125,8 @@ def first_azimuths(each: AzimuthSet, count: int) -> AzimuthSet:
 
 def stem(path: Path) -> str:
     """The part of a file's name that the azimuths of one operating point have in common."""
-    found = _NUMBERED.fullmatch(path.name)
-    return found[1] + found[3] if found else re.sub(r"\.lin(\.gz)?$", "", path.name, flags=re.IGNORECASE)
+    match = _NUMBERED.fullmatch(path.name)
+    return match[1] + match[3] if match else re.sub(r"\.lin(\.gz)?$", "", path.name, flags=re.IGNORECASE)
 
 
 def collect(files: Sequence[LinFile]) -> tuple[AzimuthSet, ...]:

@@ -103,8 +103,8 @@ class State:
     def family(self) -> str:
         """Name of the motion, as ``flapwise 1``; the description if it is unknown."""
         for pattern, name in _FAMILIES:
-            if found := pattern.search(self.name):
-                return name.format(next((group for group in found.groups() if group), ""))
+            if match := pattern.search(self.name):
+                return name.format(next((group for group in match.groups() if group), ""))
         return self.name
 
     @cached_property
@@ -147,8 +147,8 @@ class State:
 def parse(text: str, rotating: bool, order: int | None, value: float) -> State:
     """The state of a description such as ``ED 1st flapwise bending-mode DOF of blade 1 (…), m``."""
     text = " ".join(text.split())
-    found = _MODULE.fullmatch(text)
-    module, instance, name = (found[1], found[2], found[3]) if found else ("", None, text)
+    match = _MODULE.fullmatch(text)
+    module, instance, name = (match[1], match[2], match[3]) if match else ("", None, text)
     body, comma, unit = name.rpartition(", ")
     if comma and _UNIT.fullmatch(unit):
         name = body

@@ -127,10 +127,10 @@ def resolved(blade: Blade, stations: Stations) -> Stations:
 
 def enough(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rotary: bool) -> bool:
     """Whether no finer model is needed: a first one is exact, or two show no difference."""
-    found = weights(blade, stations, models, rotary)
+    checks = weights(blade, stations, models, rotary)
     if len(models) == 1:
-        return all(abs(w.difference) <= EXACT for w in found)
-    return all(w.verdict == "pass" for w in found)
+        return all(abs(w.difference) <= EXACT for w in checks)
+    return all(w.verdict == "pass" for w in checks)
 
 
 def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rotary: bool = True) -> tuple[Weight, ...]:

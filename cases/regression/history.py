@@ -160,10 +160,10 @@ def read(path: Path) -> History:
     for number, line in enumerate(read_bytes(path, LARGEST_DATA).split(b"\n"), 1):
         try:
             if line:
-                found = msgspec.json.decode(line, type=Entry)
-                for point in found.cells:
+                decoded = msgspec.json.decode(line, type=Entry)
+                for point in decoded.cells:
                     checks.check(point)
-                entries.append(found)
+                entries.append(decoded)
         except (msgspec.ValidationError, checks.RowError) as error:
             raise ValueError(
                 f"{path}: line {number}: not a run ({error}): was it written by another version, or is it another file?"

@@ -77,7 +77,7 @@ def about_deck(blade: Blade, speeds: Array) -> list[Printed]:
     Only those with numbers at one of the rotor ``speeds``, rad/s.
     """
     mass = float(np.trapezoid(blade.mass[:, 0, 0], blade.stations))
-    found = [
+    candidates = [
         _printed(blade, name, table, series)
         for name in names()
         for table in [load(name)]
@@ -85,7 +85,7 @@ def about_deck(blade: Blade, speeds: Array) -> list[Printed]:
         if series.deck
         and np.allclose([blade.length, mass], [series.deck.length, series.deck.mass], rtol=SAME_BLADE, atol=0.0)
     ]
-    return [p for p in found if any(np.isclose(d.speed * p.speed, speeds, rtol=1e-9).any() for d in p.series.data)]
+    return [p for p in candidates if any(np.isclose(d.speed * p.speed, speeds, rtol=1e-9).any() for d in p.series.data)]
 
 
 def _printed(blade: Blade, name: str, table: Table, series: Series) -> Printed:

@@ -131,8 +131,8 @@ def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, 
     Raises:
         CaseError: naming the file and line at fault.
     """
-    found = _subset(text, subset)
-    return found["r"], _stiffness(found), _mass(found)
+    columns = _subset(text, subset)
+    return columns["r"], _stiffness(columns), _mass(columns)
 
 
 def _between(r: Array, values: Array, at: Array) -> Array:

@@ -57,9 +57,9 @@ def differences(each: AzimuthSet) -> tuple[Difference, ...]:
             mean = np.abs(values).mean()
             if not size or mean < MIN_DIFFERENCE * size:
                 continue
-            found = _odd_blade(psi, values, half)
-            if found:
-                blade, ratio = found
+            odd = _odd_blade(psi, values, half)
+            if odd:
+                blade, ratio = odd
                 out.append(
                     Difference(_family(each, a.members[0]), _family(each, b.members[0]), blade, ratio, mean / size)
                 )
@@ -99,10 +99,10 @@ def _means(psi: Array, values: Array) -> tuple[Array, float] | None:
     return None
 
 
-def equality(found: tuple[Difference, ...], each: AzimuthSet) -> Iterator[Finding]:
+def equality(differences: tuple[Difference, ...], each: AzimuthSet) -> Iterator[Finding]:
     """A blade whose stiffness or coupling differs from the others'."""
-    stiff = [d for d in found if d.row == d.column]
-    reversed_sign = [d for d in found if d.row != d.column and d.ratio < -0.5]
+    stiff = [d for d in differences if d.row == d.column]
+    reversed_sign = [d for d in differences if d.row != d.column and d.ratio < -0.5]
     if reversed_sign and not any(abs(d.ratio - 1) > 0.03 for d in stiff):
         d = max(reversed_sign, key=lambda d: d.weight)
         yield Finding(
@@ -127,8 +127,8 @@ def equality(found: tuple[Difference, ...], each: AzimuthSet) -> Iterator[Findin
             "check the blade files; multi-blade coordinates assume equal blades",
             d.ratio - 1,
         )
-    elif found:
-        d = max(found, key=lambda d: d.weight)
+    elif differences:
+        d = max(differences, key=lambda d: d.weight)
         yield Finding(
             "unequal blades",
             DEFECT,

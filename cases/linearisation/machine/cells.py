@@ -107,12 +107,12 @@ def _known(cell: Cell, beside: Beside) -> Cell:
     if cell.verdict in AGREES or cell.difference is None:
         return cell
     parts = {name: value for name, value in beside.parts.items() if name in KNOWN and abs(value) > 1e-5}
-    left = cell.difference - sum(parts.values())
+    remainder = cell.difference - sum(parts.values())
     listed = ", ".join(f"{name} {100 * value:+.3g} %" for name, value in parts.items())
-    reason = f"{listed}; {100 * left:+.3g} % {'left' if parts else 'without them'}".replace("-", "−")
+    reason = f"{listed}; {100 * remainder:+.3g} % {'left' if parts else 'without them'}".replace("-", "−")
     if not parts:
         return cell
-    if cell.verdict == "fail" and abs(left) + (cell.uncertainty or 0.0) <= cell.target:
+    if cell.verdict == "fail" and abs(remainder) + (cell.uncertainty or 0.0) <= cell.target:
         return replace(cell, verdict="known difference", reason=reason)
     return replace(cell, reason="; ".join(filter(None, (cell.reason, reason))))
 

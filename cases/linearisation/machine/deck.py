@@ -130,10 +130,10 @@ def _shapes(text: Text, names: dict[str, str], damping: dict[str, str], tuners: 
     named = keys(text)
     out: dict[str, Shape] = {}
     for motion, name in names.items():
-        wanted = [f"{name}{k}" for k in range(2, 7)]
-        if not all(each.lower() in named for each in wanted):
+        numbered = [f"{name}{k}" for k in range(2, 7)]
+        if not all(each.lower() in named for each in numbered):
             continue
-        coefficients = np.array([value(text, named, each) for each in wanted])
+        coefficients = np.array([value(text, named, each) for each in numbered])
         if abs(coefficients.sum()) < 1e-6:
             raise CaseError(f"{text.path}: {name}: the coefficients sum to 0, but a shape is 1 at its end: correct one")
         out[motion] = Shape(
@@ -145,8 +145,8 @@ def _shapes(text: Text, names: dict[str, str], damping: dict[str, str], tuners: 
 
 
 def _number(text: Text, name: str, otherwise: float) -> float:
-    found = keys(text).get(name.lower())
-    out = number(found[1]) if found else None
+    entry = keys(text).get(name.lower())
+    out = number(entry[1]) if entry else None
     return out if out is not None and np.isfinite(out) else otherwise
 
 
