@@ -15,10 +15,10 @@ from southwell.cases.store import codec
 
 SUPPORT = Path(__file__).parent
 
-CASE = """
+BEAM = """
 name = "stub"
 title = "A short beam"
-description = "For runs that are killed."
+description = "For commands that are run and killed."
 source = "nowhere"
 [blade]
 kind = "beam"
@@ -35,10 +35,9 @@ J = 7e-8
 rad_s = [0.0, 10.0]
 [compare]
 modes = 2
-[variants.a]
-[variants.b]
-length = 2.5
 """
+
+CASE = BEAM + "[variants.a]\n[variants.b]\nlength = 2.5\n"
 
 CODES = "counted:FIRST,counted:SECOND,exact-beam"
 
@@ -93,12 +92,13 @@ def kill(child: subprocess.Popen[str], when: Callable[[], bool]) -> bool:
 def running(folder: Path) -> list[str]:
     """Processes that runs in ``folder`` have started and that are still there, a few seconds for them to go."""
     until = monotonic() + 20
-    while (result := _running(folder)) and monotonic() < until:
+    while (result := processes(folder)) and monotonic() < until:
         sleep(0.05)
     return result
 
 
-def _running(folder: Path) -> list[str]:
+def processes(folder: Path) -> list[str]:
+    """Processes that runs in ``folder`` have started."""
     result = []
     for entry in Path("/proc").glob("[0-9]*/environ"):
         try:

@@ -22,28 +22,8 @@ from southwell.cases.verify import matrix
 from southwell.core.solve import modes
 from southwell.references.protocol.registry import names
 from southwell.reports.cli import app as cli
-
-BEAM = """
-name = "stub"
-title = "A short beam"
-description = "For the command line's tests."
-source = "nowhere"
-[blade]
-kind = "beam"
-length = 2.0
-hub_radius = 0.1
-E = 7e10
-G = 2.7e10
-density = 2700.0
-A = 4e-4
-I_y = 2e-8
-I_z = 5e-8
-J = 7e-8
-[speeds]
-rad_s = [0.0, 10.0]
-[compare]
-modes = 2
-"""
+from southwell.tests.support import killing
+from southwell.tests.support.killing import BEAM
 
 
 @pytest.fixture
@@ -257,7 +237,7 @@ def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
         assert child.poll() is None
         assert time.monotonic() < waited
         time.sleep(0.1)
-    assert len(running(mark)) > 2
+    assert len(killing.processes(mark)) > 2
     return child, results_file
 
 
@@ -269,27 +249,6 @@ def kept_cells(file: Path) -> tuple[Cell, ...]:
 def heeding() -> None:
     """Interrupts are heeded, as at a terminal, even where these tests run in the background, which ignores them."""
     signal.signal(signal.SIGINT, signal.SIG_DFL)
-
-
-def running(mark: Path) -> list[str]:
-    """Processes with ``mark`` in their environment: those that the run has started."""
-    processes = []
-    for entry in Path("/proc").glob("[0-9]*/environ"):
-        try:
-            text = entry.read_bytes()
-        except OSError:
-            continue
-        if f"SOUTHWELL_TEST={mark}\0".encode() in text:
-            processes.append(entry.parent.name)
-    return processes
-
-
-def gone(mark: Path) -> bool:
-    """Whether no such process is left, a few seconds for the system to clear up."""
-    until = time.monotonic() + 5
-    while running(mark) and time.monotonic() < until:
-        time.sleep(0.05)
-    return not running(mark)
 
 
 @pytest.mark.slow
@@ -308,7 +267,7 @@ def test_interrupted_it_keeps_and_reports_what_is_finished_and_leaves_no_process
     assert {(c.code, c.verdict) for c in kept.cells if c.shares != "everything"} == {("exact-beam", "pass")}
     assert kept.versions
     assert f"** {len(kept.cells)} cells: " in (results_file.parent / "report.md").read_text()
-    assert gone(tmp_path)
+    assert killing.running(tmp_path) == []
 
 
 @pytest.mark.nightly
@@ -331,7 +290,7 @@ def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
     whom(child.pid, how)
     child.communicate(timeout=30)  # the pool holds its pipes open: it must be gone, too
     assert child.returncode == -how
-    assert gone(tmp_path)
+    assert killing.running(tmp_path) == []
     for command in ("report", "gate"):
         status, shown, _ = southwell(f"{command} {results_file.parent}", capsys)
         assert status == 3
