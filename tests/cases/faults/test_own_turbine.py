@@ -3,6 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
 import pytest
 
 from southwell.cases.faults import own_turbine, table
@@ -49,7 +50,8 @@ def test_every_fault_makes_a_code_fail_that_does_not_have_it(
         made = machine(turbine, Resolution())
         asked.extend(omega for omega, _, _ in runs)
         solved = [(n, turbine_modes(made, omega, count)) for omega, n, count in runs]
-        return [TurbineModes(1j * m.frequencies * (1.0 + 0.5 / n**2), m.motions, n) for n, m in solved]
+        values = [np.asarray(1j * m.frequencies * (1.0 + 0.5 / n**2), np.complex128) for n, m in solved]
+        return [TurbineModes(v, m.motions, n) for v, (n, m) in zip(values, solved, strict=True)]
 
     monkeypatch.setattr(solving, "turbine_answers", answers)
     controls = own_turbine.run(subject, ("exudyn-turbine", "pinocchio-turbine"), own_turbine.NAMES)
