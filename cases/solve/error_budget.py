@@ -15,7 +15,7 @@ Only one thing is altered at a time: effects this small add up, except for their
 """
 
 from collections.abc import Iterator, Sequence
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -24,12 +24,15 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
+from ...core.participation import families, numbered, participation
 from ...core.solve import mesh_modes
 from ...core.spectrum.eigen import UnstableError
 from ...core.steady.blade_state import SteadyStateError
-from ..input.schema import Case, Variant
+from ..input.schema import Case, Compare, Variant
+from ..judge.pairing import aligned, pair, weights
 from ..judge.results import BudgetEntry, Cell
-from .changed import changed
+from ..judge.spectrum import of_blade
+from .core_solver import qualifying
 from .published_tables import about
 
 ELEMENTS = 50
@@ -143,3 +146,30 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
             if sizes:
                 out.append(BudgetEntry(case, omega, name, cause, part, max(sizes), bound=True))
     return out
+
+
+@dataclass(frozen=True)
+class ModeChange:
+    """Name and frequencies (rad/s) of one mode with and without the alteration; ``wrong`` is None if no mode corresponds."""
+
+    name: str
+    right: float
+    wrong: float | None
+
+    @property
+    def change(self) -> float | None:
+        """Relative difference of ``wrong`` from ``right``."""
+        return None if self.wrong is None else self.wrong / self.right - 1.0
+
+
+def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[ModeChange, ...]:
+    """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
+    weight = weights(blade)
+    right, wrong = aligned(right, weight), aligned(wrong, weight)
+    energies = participation(right, blade)
+    indices, names = qualifying(energies, compare), numbered(families(energies))
+    partners = [p.mode for p in pair(of_blade(right, weight), of_blade(wrong), indices)]
+    return tuple(
+        ModeChange(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
+        for k, p in zip(indices, partners, strict=True)
+    )

@@ -18,7 +18,7 @@ from ..faults import table
 from ..faults.seeding import seeded
 from ..input.schema import Compare, Variant
 from ..solve import core_solver
-from ..solve.changed import ModeChange, changed
+from ..solve.error_budget import ModeChange, changed
 
 ELEMENTS = core_solver.COARSEST
 """Elements with and without a fault: the discretisation errors nearly cancel in the change due to the fault."""
