@@ -13,6 +13,7 @@ from rich.table import Table
 from southwell.cases.judge.results import Cell, Run
 from southwell.cases.regression import gate, history
 from southwell.cases.regression.gate import compare
+from southwell.cases.regression.properties import Property
 from southwell.cases.store import codec, results_file
 from southwell.cases.store.unfinished import Unfinished
 from southwell.reports.ci import gate_text, junit
@@ -55,6 +56,20 @@ def test_a_frequency_moved_is_listed_and_counts_if_asked_for(change: float, list
     )
     assert comparison.passed()
     assert comparison.passed(strict=True) is not listed
+
+
+def test_moved_frequencies_are_listed_with_the_largest_change_first() -> None:
+    cells = at(at(BEFORE.cells, 0, value=10.0 * (1 + 1e-6)), 1, value=20.0 * (1 - 1e-3))
+    assert [c.after.mode for c in compared(replace(BEFORE, cells=cells)).moved] == [2, 1]
+
+
+def test_measured_points_and_misses_are_counted() -> None:
+    cells = (*at(BEFORE.cells, 0, verdict="measured"), replace(CELL, mode=9, verdict="fail"))
+    assert compared(replace(BEFORE, cells=cells)).measured == 1
+    entry = history.entry(replace(BEFORE, cells=cells, controls=()), "x", "m")
+    right, wrong = (Property("beam", "core", "fingerprint", "mass", 0.1, verdict) for verdict in ("pass", "fail"))
+    assert gate.misses(entry) == 1
+    assert gate.misses(replace(entry, properties=(right, right, wrong))) == 2
 
 
 DAMPING = replace(CELL, mode=1, quantity="damping", value=0.14, reference=0.14, difference=0.0, full=None)
