@@ -71,6 +71,15 @@ Shape dimensions() {
     return dimensions(static_cast<const T*>(nullptr));
 }
 
+// Call f with the size of an element's matrix, 12 or 18, as a constant; ``more``: what a matrix (n, d, d) lacks of it.
+template <class F>
+auto sized(const py::array& matrix, F f, int more = 0) {
+    const auto size = matrix.ndim() == 3 ? matrix.shape(1) + more : 0;
+    if (size == 18) return f(std::integral_constant<int, 18>());
+    if (size == 12) return f(std::integral_constant<int, 12>());
+    throw std::invalid_argument("the matrices of elements must be (n, 12, 12) or (n, 18, 18)");
+}
+
 constexpr py::ssize_t MANY = 64;  // items that take longer than to give the lock away and to take it back
 
 // A function of one item for arrays (..., item): the results (..., result).
@@ -84,19 +93,6 @@ auto each(Out (*f)(const In&)) {
         std::optional<WithoutLock> unlocked;
         if (n >= MANY) unlocked.emplace();
         for (py::ssize_t k = 0; k < n; ++k) to[k] = f(from[k]);
-        return out;
-    };
-}
-
-// A function of two items of one type.
-template <class Out, class In>
-auto each(Out (*f)(const In&, const In&)) {
-    return [f](const Doubles& a, const Doubles& b) {
-        Doubles out(shape_of(a, static_cast<int>(dimensions<In>().size()), dimensions<Out>()));
-        const py::ssize_t n = out.size() / numbers<Out>;
-        const In *first = items<In>(a, n), *second = items<In>(b, n);
-        Out* to = fill<Out>(out);
-        for (py::ssize_t k = 0; k < n; ++k) to[k] = f(first[k], second[k]);
         return out;
     };
 }

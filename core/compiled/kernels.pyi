@@ -21,11 +21,6 @@ def exp(twist: Array) -> Array: ...
 def log(x: Array) -> Array: ...
 def tangent(twist: Array) -> Array: ...
 def tangent_inverse(twist: Array) -> Array: ...
-def tangent_transpose_derivative(twist: Array, wrench: Array) -> Array:
-    """(..., 6, 6) derivatives of ``tangent(ζ)ᵀ f`` with respect to ζ (..., 6) at constant f (..., 6)."""
-
-def tangent_inverse_transpose_derivative(twist: Array, wrench: Array) -> Array:
-    """The same of ``tangent_inverse``."""
 
 # element
 
@@ -57,9 +52,6 @@ def relative_pencil(
     beams: Beams, x: Array, beta: Array, frame: Array, gravity: Array, axes: Array, geometric: bool
 ) -> tuple[Array, Array, Array, Array, Array]:
     """``beams.relative_pencil``."""
-
-def relative_strains(laws: StrainLaws, x: Array, beta: Array) -> Array:
-    """``measures.relative_strain``."""
 
 def respond(laws: StrainLaws, x: Array, beta: Array, s: Array, on_eta: Array) -> tuple[Array, Array, Array]:
     """``measures.response``."""

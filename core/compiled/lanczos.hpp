@@ -12,18 +12,6 @@ struct LanczosOperator {
     LinkArrays links;
     Doubles flexibility, transfer, reaction, massive, lever;
 
-    LanczosOperator(Doubles M_, Doubles C_, Doubles K_, const LinkArrays& links_, Doubles flexibility_,
-                    Doubles transfer_, Doubles reaction_, Doubles massive_, Doubles lever_)
-        : M(M_),
-          C(C_),
-          K(K_),
-          links(links_),
-          flexibility(flexibility_),
-          transfer(transfer_),
-          reaction(reaction_),
-          massive(massive_),
-          lever(lever_) {}
-
     template <int D>
     Operator<D> sized_as() const {
         const auto m = elements_of<D>(K, K.shape(0));

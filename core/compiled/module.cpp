@@ -11,24 +11,19 @@ inline bool processor_has_avx2() { return __builtin_cpu_supports("avx2") && __bu
 inline bool processor_has_avx2() { return false; }
 #endif
 
-inline Matrix<3, 3> skew_of(const Vector3& a) { return skew(a); }
-inline Matrix6 coadjoint_of(const Vector6& a) { return coadjoint(a); }
-
 inline void define(py::module_& m) {
     m.def("sources", [] { return SOURCES; });
     m.def("processor_has_avx2", &processor_has_avx2);
 
-    m.def("skew", each<Matrix<3, 3>, Vector3>(skew_of));
+    m.def("skew", each<Matrix<3, 3>, Vector3>(skew));
     m.def("inverse", each<Pose, Pose>(inverse));
     m.def("adjoint", each<Matrix6, Pose>(adjoint));
     m.def("ad", each<Matrix6, Vector6>(ad));
-    m.def("coadjoint", each<Matrix6, Vector6>(coadjoint_of));
+    m.def("coadjoint", each<Matrix6, Vector6>(coadjoint));
     m.def("exp", each<Pose, Vector6>(exp));
     m.def("log", each<Vector6, Pose>(log));
     m.def("tangent", each<Matrix6, Vector6>(tangent));
     m.def("tangent_inverse", each<Matrix6, Vector6>(tangent_inverse));
-    m.def("tangent_transpose_derivative", each<Matrix6, Vector6>(tangent_transpose_derivative));
-    m.def("tangent_inverse_transpose_derivative", each<Matrix6, Vector6>(tangent_inverse_transpose_derivative));
 
     py::class_<LawArrays>(m, "StrainLaws", py::module_local())
         .def(py::init<bool, Doubles, Doubles, Doubles, Doubles, Doubles>());
@@ -36,7 +31,6 @@ inline void define(py::module_& m) {
         .def(py::init<const LawArrays&, Indices, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles, Doubles,
                       Doubles>());
     m.def("relative_pencil", &relative_pencil);
-    m.def("relative_strains", &relative_strains);
     m.def("respond", &respond);
 
     py::class_<LinkArrays>(m, "Links", py::module_local()).def(py::init<Indices, Doubles, Doubles>());

@@ -15,31 +15,22 @@ ElementMatrices<D> elements_of(const py::array& a, py::ssize_t n) {
     return {items<Matrix<D, D>>(a, n), static_cast<int>(n)};
 }
 
-// Call f with the size of an element's matrix, 12 or 18, as a constant.
-template <class F>
-auto sized(const py::array& matrix, F f) {
-    const auto size = matrix.ndim() == 3 ? matrix.shape(1) : 0;
-    if (size == 18) return f(std::integral_constant<int, 18>());
-    if (size == 12) return f(std::integral_constant<int, 12>());
-    throw std::invalid_argument("the matrices of elements must be (n, 12, 12) or (n, 18, 18)");
-}
-
 // The links of a tree, with the arrays they refer to; see links.hpp.
 struct LinkArrays {
     Indices parent;
     Doubles to_child, clamped;
-    std::vector<bool> leaf;  // of the nodes
-    Links links;
+    int n = static_cast<int>(parent.size());
+    std::vector<bool> leaf = leaves();  // of the nodes
+    Links links{n, parent.data(), items<Matrix6>(to_child, n), clamped.size() ? items<Matrix6>(clamped, n) : nullptr};
 
-    LinkArrays(Indices parent_, Doubles to_child_, Doubles clamped_)
-        : parent(parent_), to_child(to_child_), clamped(clamped_), leaf(parent.size() + 1, true) {
-        const int n = static_cast<int>(parent.size());
+    std::vector<bool> leaves() const {
+        std::vector<bool> out(n + 1, true);
         for (int k = 0; k < n; ++k) {
             if (parent.at(k) < 0 || parent.at(k) > k)
                 throw std::invalid_argument("a parent must come before its child");
-            leaf[parent.at(k)] = false;
+            out[parent.at(k)] = false;
         }
-        links = {n, parent.data(), items<Matrix6>(to_child, n), clamped.size() ? items<Matrix6>(clamped, n) : nullptr};
+        return out;
     }
 };
 
@@ -197,17 +188,15 @@ Factors<D> factors_of(const py::array& flexibility, const py::array& transfer, c
 // Replace the loads x (k, dn) by the displacements.
 inline void solve_in_place(const py::array& flexibility, const py::array& transfer, const py::array& reaction,
                            const LinkArrays& of, py::array& x) {
-    const Links& links = links_of(of, flexibility.shape(0));
-    const int n = links.n, d = static_cast<int>(flexibility.shape(1));
-    const Rows rows = writable_rows(x, n * d);
-    const auto solve_all = [&](const auto& factors) {
+    const auto solve_all = [&](auto D) {
+        const Links& links = links_of(of, flexibility.shape(0));
+        const auto factors = factors_of<D>(flexibility, transfer, reaction, links.n);
+        const Rows rows = writable_rows(x, links.n * (D - 6));
         const WithoutLock unlocked;
         solve(factors, links, rows);
+        return 0;
     };
-    if (d == 12)
-        solve_all(factors_of<18>(flexibility, transfer, reaction, n));
-    else
-        solve_all(factors_of<12>(flexibility, transfer, reaction, n));
+    sized(flexibility, solve_all, 6);
 }
 
 inline int negative(const py::array& K, const py::array& C, const py::array& M, const LinkArrays& links, double omega) {

@@ -139,7 +139,7 @@ inline void add_inertia(const Beams& beams, int k, const RelativePose& at, const
         if (geometric) {
             // D_a g = D_point g − coadjoint(g) H (ρ, β), and ∂(Hᵀg)/∂(ρ, β) is a spring between the ends and β
             K = K - coadjoint(inertial.g);
-            turning = tangent_transpose_derivative(point.zeta, inertial.g);
+            turning = transpose_derivative(TANGENT, point.zeta, inertial.g);
             on_eta = on_eta + transposed_times(beams.shape[p], transposed_times(point.T, inertial.g));
         }
         add(K * point.H, 0, 6, out.K);

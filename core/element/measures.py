@@ -119,7 +119,9 @@ def relative_strain(law: StrainLaw, x: Array, beta: Array) -> Array:
     An element without length, such as a root joint, has none. Bending strains are not included: they need the sections'
     thickness, which a beam does not state.
     """
-    return kernels.relative_strains(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta))
+    strain, length = response(law, x, beta).strain[:, :3], np.linalg.norm(law.eta[:, :3], axis=1)
+    size = np.abs(strain[:, 0]) if law.measure == "body_fixed" else np.linalg.norm(strain, axis=1)
+    return np.divide(size, length, out=np.zeros(len(x)), where=length > 0)
 
 
 def out_of_range(law: StrainLaw, x: Array) -> NDArray[np.bool_]:

@@ -33,7 +33,7 @@ struct RelativePose {
 
 // Add ∂(tangent⁻ᵀ(η) f)/∂ρ of a constant force f conjugate to η to the ρ block of a stiffness.
 inline void add_tangent_variation(const RelativePose& at, const Vector6& conjugate, Matrix<12, 12>& out) {
-    add(tangent_inverse_transpose_derivative(at.eta, conjugate) * at.inv_tangent, 0, 0, out);
+    add(transpose_derivative(INVERSE, at.eta, conjugate) * at.inv_tangent, 0, 0, out);
 }
 
 }  // namespace southwell

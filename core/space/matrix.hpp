@@ -51,20 +51,6 @@ Matrix<R, C> operator*(const Matrix<R, N>& a, const Matrix<N, C>& b) {
     return out;
 }
 
-// aᵀ b
-template <int N, int R, int C>
-Matrix<R, C> transposed_times(const Matrix<N, R>& a, const Matrix<N, C>& b) {
-    Matrix<R, C> out;
-    for (int i = 0; i < R; ++i) {
-        double sum[C] = {};
-        for (int k = 0; k < N; ++k)
-#pragma omp simd
-            for (int j = 0; j < C; ++j) sum[j] += a[k][i] * b[k][j];
-        for (int j = 0; j < C; ++j) out[i][j] = sum[j];
-    }
-    return out;
-}
-
 // Add aᵀ b to ``out``.
 template <int N, int R, int C>
 void add_transposed_times(const Matrix<N, R>& a, const Matrix<N, C>& b, Matrix<R, C>& out) {
@@ -76,6 +62,14 @@ void add_transposed_times(const Matrix<N, R>& a, const Matrix<N, C>& b, Matrix<R
             for (int j = 0; j < C; ++j) sum[j] += a[k][i] * b[k][j];
         for (int j = 0; j < C; ++j) out[i][j] = sum[j];
     }
+}
+
+// aᵀ b
+template <int N, int R, int C>
+Matrix<R, C> transposed_times(const Matrix<N, R>& a, const Matrix<N, C>& b) {
+    Matrix<R, C> out = Matrix<R, C>::zero();
+    add_transposed_times(a, b, out);
+    return out;
 }
 
 // aᵀ m a

@@ -97,7 +97,7 @@ inline Matrix6 ad(const Vector6& twist) {
     return out;
 }
 
-// ad(a)ᵀ f = cross(f) a
+// ad(a)ᵀ f = coadjoint(f) a
 inline Matrix6 coadjoint(const Vector6& wrench) {
     Matrix6 out = Matrix6::zero();
     put(skew(linear(wrench)), 0, 3, out);
@@ -199,7 +199,9 @@ inline Matrix6 tangent(const Vector6& twist) { return function(TANGENT, twist); 
 
 inline Matrix6 tangent_inverse(const Vector6& twist) { return function(INVERSE, twist); }
 
-// [[0, D], [D, dD]], where D is the derivative of Pᵀf with respect to w, and dD D's as (w, f) moves along (v, h).
+// The derivative with respect to ζ of tangent(ζ)ᵀ f, or of tangent_inverse(ζ)ᵀ f, at constant f, for TANGENT or INVERSE.
+//
+// It is [[0, D], [D, dD]], where D is the derivative of Pᵀf with respect to w, and dD D's as (w, f) moves along (v, h).
 //
 // With u = w × f, p = w·f and q = p w − z f: Pᵀf = f − α u + β q, so
 // D = α f× − 2 α' u wᵀ + β (p 1 + w fᵀ − 2 f wᵀ) + 2 β' q wᵀ.
@@ -227,16 +229,6 @@ inline Matrix6 transpose_derivative(const Pair& series, const Vector6& twist, co
     put(D, 3, 0, out);
     put(dD, 3, 3, out);
     return out;
-}
-
-// The derivative of tangent(ζ)ᵀ f with respect to ζ at constant f.
-inline Matrix6 tangent_transpose_derivative(const Vector6& twist, const Vector6& wrench) {
-    return transpose_derivative(TANGENT, twist, wrench);
-}
-
-// The derivative of tangent_inverse(ζ)ᵀ f with respect to ζ at constant f.
-inline Matrix6 tangent_inverse_transpose_derivative(const Vector6& twist, const Vector6& wrench) {
-    return transpose_derivative(INVERSE, twist, wrench);
 }
 
 }  // namespace southwell

@@ -135,7 +135,7 @@ inline void project_out(Rows w, const Row* overlap, Rows basis, int n) {
     }
 }
 
-// Eigenvalues, ascending, and eigenvectors, as columns, of a symmetric matrix, which is overwritten: cyclic Jacobi rotations.
+// Eigenvalues, and eigenvectors, as columns, of a symmetric matrix, which is overwritten: cyclic Jacobi rotations.
 inline void eigh(Gram& gram, double (&value)[WIDTH], double (&vectors)[WIDTH][WIDTH]) {
     const int n = gram.count;
     for (int i = 0; i < n; ++i)
@@ -163,12 +163,6 @@ inline void eigh(Gram& gram, double (&value)[WIDTH], double (&vectors)[WIDTH][WI
         if (!rotated) break;
     }
     for (int i = 0; i < n; ++i) value[i] = gram.item[i][i];
-    for (int i = 1; i < n; ++i) {
-        for (int j = i; j > 0 && value[j] < value[j - 1]; --j) {
-            std::swap(value[j], value[j - 1]);
-            for (int k = 0; k < n; ++k) std::swap(vectors[k][j], vectors[k][j - 1]);
-        }
-    }
 }
 
 // A growing basis, and the operator on it.
@@ -229,15 +223,15 @@ Gram extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhaust
         const Gram gram = orthogonalise(a, w, of_w, basis, force, largest);
         Gram diagonal = gram;
         eigh(diagonal, value, vectors);
-        const double least = 1e-20 * std::max({value[gram.count - 1], largest * largest, 1e-300});
-        int kept = 0;
-        for (int i = 0; i < gram.count; ++i) kept += value[i] > least;
+        const double most_value = *std::max_element(value, value + gram.count);
+        const double least = 1e-20 * std::max({most_value, largest * largest, 1e-300});
+        const auto kept = static_cast<int>(std::count_if(value, value + gram.count, [&](double x) { return x > least; }));
         exhausted = kept == 0 || basis.size + most > basis.vectors.count - most;
         if (exhausted || basis.size >= look) return gram;
-        for (int m = 0; m < kept; ++m) {
-            const int column = gram.count - kept + m;
+        for (int column = 0, row = basis.size; column < gram.count; ++column) {
+            if (value[column] <= least) continue;
             const double scale = 1.0 / std::sqrt(value[column]);
-            double* out = basis.vectors[basis.size + m];
+            double* out = basis.vectors[row++];
             std::fill_n(out, 2 * n, 0.0);
             for (int v = 0; v < gram.count; ++v) {
                 const double *from = w[v], factor = scale * vectors[v][column];

@@ -16,15 +16,6 @@ struct Factors {
     Matrix<D - 6, 6>* reaction;
 };
 
-// Add a stiffness on ξ_a + ρ.
-template <int D>
-void add_beyond(const Matrix6& beyond, Matrix<D, D>& out) {
-    add(beyond, 0, 0, out);
-    add(beyond, 0, 6, out);
-    add(beyond, 6, 0, out);
-    add(beyond, 6, 6, out);
-}
-
 // Remove the directions of ρ that a joint clamps from a matrix, and give them a stiffness: they do not move.
 template <int D>
 void clamp(const Matrix6& clamped, double stiffness, Matrix<D, D>& out) {
@@ -39,14 +30,6 @@ void clamp(const Matrix6& clamped, double stiffness, Matrix<D, D>& out) {
     add(stiffness * clamped, 6, 6, out);
 }
 
-// Whether link k is a joint.
-inline bool is_joint(const Links& links, int k) {
-    if (!links.clamped) return false;
-    double trace = 0.0;
-    for (int i = 0; i < 6; ++i) trace += links.clamped[k][i][i];
-    return trace > 0.0;
-}
-
 // Fill the factors; returns the worst result of ``invert`` over all elements.
 template <int D>
 int eliminate(const ElementMatrices<D>& K, const Links& links, const Factors<D>& out) {
@@ -55,12 +38,11 @@ int eliminate(const ElementMatrices<D>& K, const Links& links, const Factors<D>&
     std::vector<Matrix6> P(K.n + 1, Matrix6::zero());  // stiffness of each node and all that lies beyond
     for (int k = K.n - 1; k >= 0; --k) {
         Matrix<D, D> H = K.element[k];
-        add_beyond(congruence(links.to_child[k], P[k + 1]), H);
-        const bool joint = is_joint(links, k);
-        if (joint) clamp(links.clamped[k], 1.0, H);
+        add_at_end(links.to_child[k], P[k + 1], H);
+        if (links.clamped) clamp(links.clamped[k], 1.0, H);
         kind = std::min(kind, invert(H, 6));
         if (kind == 0) break;
-        if (joint) clamp(links.clamped[k], 0.0, H);
+        if (links.clamped) clamp(links.clamped[k], 0.0, H);
         add(block<6, 6>(H, 0, 0), 0, 0, P[links.parent[k]]);
         out.transfer[k] = -1.0 * transposed(block<d, 6>(H, 6, 0));
         out.reaction[k] = transposed(block<6, d>(H, 0, 6));
@@ -129,9 +111,9 @@ int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, co
                 im[i][j] = omega * gyroscopic[i][j];
             }
         }
-        add_beyond(congruence(links.to_child[k], P[k + 1]), re);
-        add_beyond(congruence(links.to_child[k], Q[k + 1]), im);
-        if (is_joint(links, k)) {
+        add_at_end(links.to_child[k], P[k + 1], re);
+        add_at_end(links.to_child[k], Q[k + 1], im);
+        if (links.clamped) {
             clamp(links.clamped[k], 1.0, re);
             clamp(links.clamped[k], 0.0, im);
         }

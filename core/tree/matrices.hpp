@@ -17,6 +17,14 @@ struct ElementMatrices {
     int n;
 };
 
+// Add a matrix on the twist of a node to that of the element that ends there.
+template <int D>
+void add_at_end(const Matrix6& to_child, const Matrix6& on_end, Matrix<D, D>& out) {
+    const Matrix6 on_sum = congruence(to_child, on_end);  // on ξ_a + ρ
+    for (int i = 0; i < 12; i += 6)
+        for (int j = 0; j < 12; j += 6) add(on_sum, i, j, out);
+}
+
 // Columns ``first`` … first + W − 1 of the rows uᵀ e of V vectors.
 template <int W, int D, int V>
 void columns(const Matrix<D, D>& e, const Vector<D> (&u)[V], int first, Vector<D> (&out)[V]) {

@@ -4,7 +4,6 @@ import numpy as np
 import pytest
 from scipy.linalg import expm
 
-from southwell.core.compiled import kernels
 from southwell.core.space import spatial as sp
 
 
@@ -43,25 +42,6 @@ def test_tangent_is_its_defining_series_and_inverts(angle: float) -> None:
         total, term = total + term, term @ sp.ad(z) / (k + 2)
     np.testing.assert_allclose(sp.tangent(z), total, atol=1e-13)
     np.testing.assert_allclose(sp.tangent(z) @ sp.tangent_inverse(z), np.broadcast_to(np.eye(6), (6, 6, 6)), atol=1e-11)
-
-
-@pytest.mark.parametrize("angle", ANGLES)
-@pytest.mark.parametrize(
-    ("function", "derivative"),
-    [
-        (sp.tangent, kernels.tangent_transpose_derivative),
-        (sp.tangent_inverse, kernels.tangent_inverse_transpose_derivative),
-    ],
-)
-def test_transpose_derivatives_match_difference_quotients(angle: float, function, derivative) -> None:
-    z, h = twists(angle), 1e-5
-    f = np.random.default_rng(1).normal(size=z.shape)
-
-    def value(z: np.ndarray) -> np.ndarray:
-        return np.einsum("nij,ni->nj", function(z), f)
-
-    quotient = np.stack([(value(z + h * e) - value(z - h * e)) / (2 * h) for e in np.eye(6)], axis=-1)
-    np.testing.assert_allclose(derivative(z, f), quotient, atol=2e-8)
 
 
 def test_adjoint_transforms_twists_and_cross_is_dual_to_ad() -> None:
