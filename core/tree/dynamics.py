@@ -286,8 +286,8 @@ def tangent(tree: Tree, k: Kinematics, c: Cartesian) -> tuple[Array, Array, Arra
     M* = Bᵀ M B, C* = Bᵀ (2 M Ḃ + C B), K* = Bᵀ (M B̈ + C Ḃ + K B) + ``joint_stiffness``.
     """
     B, B1, B2 = (rows.reshape(-1, rows.shape[-1]) for rows in (k.B, k.B1, k.B2))
-    on_bodies: tuple[Array, ...] = (c.M @ B, 2.0 * (c.M @ B1) + c.C @ B, c.M @ B2 + c.C @ B1 + c.K @ B)
-    M, C, K = (projected(k, w.reshape(-1, 6, B.shape[-1])) for w in on_bodies)  # (eq. 10)
+    on_bodies = (c.M @ B, 2.0 * (c.M @ B1) + c.C @ B, c.M @ B2 + c.C @ B1 + c.K @ B)
+    M, C, K = (projected(k, np.reshape(w, (-1, 6, B.shape[-1]))) for w in on_bodies)  # (eq. 10)
     j = tree.joints
     K[:j, :j] += joint_stiffness(tree, k, c)
     for s in tree.mechanism.coordinate_springs:
