@@ -225,7 +225,8 @@ Gram extend(const Operator<D>& a, Rows& w, Basis& basis, int look, bool& exhaust
         eigh(diagonal, value, vectors);
         const double most_value = *std::max_element(value, value + gram.count);
         const double least = 1e-20 * std::max({most_value, largest * largest, 1e-300});
-        const auto kept = static_cast<int>(std::count_if(value, value + gram.count, [&](double x) { return x > least; }));
+        const auto kept =
+            static_cast<int>(std::count_if(value, value + gram.count, [&](double x) { return x > least; }));
         exhausted = kept == 0 || basis.size + most > basis.vectors.count - most;
         if (exhausted || basis.size >= look) return gram;
         for (int column = 0, row = basis.size; column < gram.count; ++column) {

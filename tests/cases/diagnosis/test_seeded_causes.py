@@ -97,7 +97,7 @@ def numbers(problem: Problem, seed: Seed) -> np.ndarray:
         [seed.speed * omega for omega in problem.speeds],
         seed.lumped or MESH,
         len(problem.labels),
-        "half_end" if seed.lumped else "consistent",
+        mass="half_end" if seed.lumped else "consistent",
         effects=seed.effects,
         gravity=np.array(seed.gravity),
     )
