@@ -99,7 +99,8 @@ def along(modes: Modes, axis: int) -> int:
     tips = np.abs(modes.shapes[:, -1, 1:3])
     modes_along = np.flatnonzero(tips[:, axis - 1] > tips[:, 2 - axis])
     require(
-        modes_along.size, f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: axes not converted?"
+        modes_along.size,
+        f"no mode of {len(tips)} moves mostly along {'xyz'[axis]} at the tip: check the conversion of axes",
     )
     return int(modes_along[0])
 

@@ -116,10 +116,10 @@ def shapes(code: BladeAdapter) -> None:
     wrong = np.abs(moved / moved[-1] - blades.cantilever_shape()).max()
     require(
         wrong < 0.02,
-        f"{at}: the shape differs from the cantilever's by up to {wrong:.3f} of the tip's motion: wrong stations or scale?",
+        f"{at}: the shape differs from the cantilever's by up to {wrong:.3f} of the tip's motion: check stations and scale",
     )
     stray = np.abs(shape[:, [0, 3]]).max() / moved[-1]
-    require(stray < 0.05, f"{at}: stretch or torsion is {stray:.3f} of the bending: wrong order of columns?")
+    require(stray < 0.05, f"{at}: stretch or torsion is {stray:.3f} of the bending: check the order of the columns")
 
 
 def order(code: BladeAdapter) -> None:
@@ -188,7 +188,9 @@ def precone_sense(code: BladeAdapter) -> None:
 
 def _leans(ratio: float, how: str, axis: str = "y") -> None:
     at = f"plank {how} by 0.3 rad at 0 rad/s, mode 1"
-    require(abs(ratio + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {ratio:.4f}, expected −tan 0.3: wrong sense?")
+    require(
+        abs(ratio + np.tan(0.3)) < 0.01, f"{at}: {axis}/z = {ratio:.4f}, expected −tan 0.3: check the sense of rotation"
+    )
 
 
 def _lean(modes: Modes, axis: int = 1) -> float:
@@ -228,7 +230,8 @@ def torsion(code: BladeAdapter) -> None:
         is_torsion = (np.abs(limit / exact - 1.0) < TOLERANCE).any()
         require(
             not is_torsion,
-            f"soft shaft at 0 rad/s: the mode at {exact:g} rad/s has no rotation about the axis: wrong order of columns?",
+            f"soft shaft at 0 rad/s: the mode at {exact:g} rad/s has no rotation about the axis: check the order of the "
+            "columns",
         )
         raise NotForItError("the code has no torsion")
     first = int(turns[0]) + 1

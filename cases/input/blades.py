@@ -244,7 +244,7 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
     for i, row in enumerate(rows[1:]):
         where = f"{path}: line {numbers[i + 1]}"
         if len(row) != len(header):
-            raise CaseError(f"{where}: {len(row)} columns instead of {len(header)}: a missing or stray comma?")
+            raise CaseError(f"{where}: {len(row)} columns instead of {len(header)}: check for a missing or stray comma")
         for j, cell in enumerate(row):
             try:
                 out[i, j] = float(cell)

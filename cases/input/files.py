@@ -148,18 +148,20 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file that can") from error
     marked = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) and not raw.startswith(codecs.BOM_UTF32_LE)
     if b"\0" in raw and not marked:
-        raise CaseError(f"{path}: not a text file: is it the right one? if it is in UTF-16 or UTF-32, save it as UTF-8")
+        raise CaseError(
+            f"{path}: not a text file: check that it is the right one; if it is in UTF-16 or UTF-32, save it as UTF-8"
+        )
     try:
         content = raw.decode("utf-16" if marked else "utf-8-sig")
     except UnicodeDecodeError as error:
         if not older or marked:
             line = raw.count(b"\n", 0, error.start) + 1
             raise CaseError(
-                f"{path}: line {line}: not UTF-8: wrong encoding or binary file? save it as UTF-8"
+                f"{path}: line {line}: not UTF-8: save it as UTF-8, or check that it is a text file"
             ) from None
         content = raw.decode("latin-1")
     if not content.strip():
-        raise CaseError(f"{path}: empty: was it written to the end?")
+        raise CaseError(f"{path}: empty: check that it was written to the end")
     for begins, what in NOT_THE_FILE:
         if content.lstrip()[: len(begins)].lower() == begins:
             raise CaseError(f"{path}: {what}")
@@ -187,4 +189,4 @@ def _cells(where: str, line: str, separator: str) -> list[str]:
     try:
         return [cell.strip() for cell in next(csv.reader([line], delimiter=separator))]
     except csv.Error as error:  # also a field of more than 131,072 characters
-        raise CaseError(f"{where}: not CSV: {error}: is it the right file? correct the line") from None
+        raise CaseError(f"{where}: not CSV: {error}: correct the line, or give another file") from None

@@ -48,7 +48,7 @@ DEEPEST = 32
 
 
 def _too_deep(path: Path) -> CaseError:
-    return CaseError(f"{path}: more than {DEEPEST} tables or lists within each other: is it the right file?")
+    return CaseError(f"{path}: more than {DEEPEST} tables or lists within each other: check that it is the right file")
 
 
 def _depth(value: Any) -> int:

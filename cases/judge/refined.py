@@ -54,7 +54,8 @@ def _extra(reference: Reference, answer: Spectrum, refined_modes: Sequence[Refin
     top = max((answer.frequencies[m.partner.mode] for m in refined_modes if m.partner.mode is not None), default=0.0)
     extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in paired and f < top]
     return (
-        f"modes at {', '.join(extra)} rad/s do not match any mode of Southwell's own solver: spurious, or missed by it?"
+        f"modes at {', '.join(extra)} rad/s do not match any mode of Southwell's own solver: they are spurious, or it "
+        "missed them"
         if extra
         else ""
     )

@@ -123,7 +123,7 @@ def fault(reference: Spectrum, other: Spectrum) -> str:
     more = len(other.values) > count
     if more and np.sum(other.frequencies <= highest * (1.0 + CLOSE)) > count:
         return (
-            f"values: {len(other.values)} modes, and Southwell's own solver has {count}: are there conjugates, or spurious "
-            "ones?"
+            f"values: {len(other.values)} modes, and Southwell's own solver has {count}: give each conjugate "
+            "pair once, and no spurious mode"
         )
     return ""

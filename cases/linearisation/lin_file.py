@@ -99,12 +99,14 @@ def text(path: Path) -> str:
         except (OSError, EOFError, zlib.error) as error:
             raise CaseError(f"{path}: damaged gzip file: copy or compress it again") from error
         if len(raw) > LARGEST_DATA:
-            raise CaseError(f"{path}: larger than {LARGEST_DATA // MEGABYTE} MB when unpacked: is it the right file?")
+            raise CaseError(
+                f"{path}: larger than {LARGEST_DATA // MEGABYTE} MB when unpacked: check that it is the right file"
+            )
     if b"\0" in raw:
-        raise CaseError(f"{path}: not a text file: is it the right one?")
+        raise CaseError(f"{path}: not a text file: check that it is the right one")
     content = raw.decode("utf-8-sig", errors="replace")
     if not content.strip():
-        raise CaseError(f"{path}: empty: was it written to the end?")
+        raise CaseError(f"{path}: empty: check that it was written to the end")
     return content
 
 
@@ -130,10 +132,7 @@ def parsed(path: Path, content: str) -> LinFile:
         match[1]: k for k, line in enumerate(lines) if line.startswith("Order of ") and (match := _TABLE.match(line))
     }
     if "continuous states" not in tables:
-        raise CaseError(
-            f"{path}: no table of continuous states: linearised without states? give a file of a model with "
-            "degrees of freedom"
-        )
+        raise CaseError(f"{path}: no table of continuous states: give a file of a model with degrees of freedom")
     states = _table(path, lines, tables["continuous states"], overflowed)
     derivatives = (
         _table(path, lines, tables["continuous state derivatives"], overflowed)
@@ -223,7 +222,7 @@ def _table(path: Path, lines: list[str], start: int, overflowed: list[str]) -> t
         order = int(row[4]) if row[4] and row[4].isdigit() else None
         out.append(parse(row[5], row[3] == "T", order, value))
         if len(out) > MAX_STATES:
-            raise CaseError(f"{path}: more than {MAX_STATES} states: is it the right file?")
+            raise CaseError(f"{path}: more than {MAX_STATES} states: check that it is the right file")
     if not out:
         raise CaseError(f"{path}: line {start + 1}: an empty table of states: give a model with degrees of freedom")
     keys = [state.text for state in out]
@@ -251,8 +250,8 @@ def _matrix(path: Path, lines: list[str], n: int) -> list[tuple[int, list[str]]]
     for k, row in rows:
         if len(row) != n:
             raise CaseError(
-                f"{path}: line {k}: {len(row)} numbers instead of {n} in a row of A: cut short, or numbers that run "
-                "together? use a wider OutFmt"
+                f"{path}: line {k}: {len(row)} numbers instead of {n} in a row of A: give the file whole; for numbers "
+                "that run together, use a wider OutFmt"
             )
     if len(rows) < n:
         raise CaseError(f"{path}: the file ends after {len(rows)} of {n} rows of A: give it whole")

@@ -63,7 +63,7 @@ def read_csv(path: Path) -> ModeTable:
             "frequency_hz with damping_ratio, or real_rad_s with imag_rad_s: name them so"
         )
     if len(rows) > MAX_ROWS:
-        raise CaseError(f"{path}: more than {MAX_ROWS} rows: is it the right file?")
+        raise CaseError(f"{path}: more than {MAX_ROWS} rows: check that it is the right file")
     values: dict[str, dict[float, tuple[float, float]]] = defaultdict(dict)
     for k, row in rows:
         if len(row) != len(head):

@@ -141,7 +141,9 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults
     for k, cells in table:
         where = f"{path}: line {k}"
         if len(cells) != len(header):
-            raise CaseError(f"{where}: {len(cells)} columns instead of {len(header)}: a missing or stray comma?")
+            raise CaseError(
+                f"{where}: {len(cells)} columns instead of {len(header)}: check for a missing or stray comma"
+            )
         rows.append(_given(where, k, dict(zip(header, cells, strict=True)), columns, defaults or Defaults()))
     _no_repeats(rows, path, columns.measured)
     return UserResults(name, str(path), tuple(rows), columns.measured)

@@ -143,7 +143,7 @@ def append(path: Path, new: Entry) -> None:
                 if file.read(1) != b"\n":  # the last line is truncated
                     line = b"\n" + line
             if file.write(line) != len(line):
-                raise OSError(0, "the line was cut short: is the disk full?", str(path))
+                raise OSError(0, "the line was cut short: check that the disk is not full", str(path))
         finally:
             portalocker.unlock(file)
 
@@ -166,7 +166,7 @@ def read(path: Path) -> History:
                 entries.append(decoded)
         except (msgspec.ValidationError, checks.RowError) as error:
             raise ValueError(
-                f"{path}: line {number}: not a run ({error}): was it written by another version, or is it another file?"
+                f"{path}: line {number}: not a run ({error}): check that it is a history of this version"
             ) from error
         except (msgspec.DecodeError, UnicodeDecodeError, RecursionError):
             truncated.append(number)

@@ -120,7 +120,7 @@ def read(path: Path) -> Run:
                 rows[kind].append(row)
         except (ValueError, AttributeError, KeyError, TypeError, RecursionError) as error:
             raise ValueError(
-                f"{path}: line {number}: not a result ({error}): was it written by another version?"
+                f"{path}: line {number}: not a result ({error}): check that this version wrote it"
             ) from error
     end = about.pop("end", None)
     run = Run(**{ROWS[kind]: tuple(of_kind) for kind, of_kind in rows.items()}, **about)

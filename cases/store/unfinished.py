@@ -124,7 +124,7 @@ def read(path: Path) -> Run:
     except KeyError:
         return Run((), unfinished="the run was stopped before its first answer")
     except (TypeError, ValueError) as error:
-        raise ValueError(f"{path}: not an unfinished run ({error}): was it written by another version?") from error
+        raise ValueError(f"{path}: not an unfinished run ({error}): check that this version wrote it") from error
     finally:
         store.close()
     place = {(p.case, p.code): k for k, p in enumerate(plan)}

@@ -126,7 +126,9 @@ def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
         raise CodeError(f"{name}: not finite: the linearisation of the code is not usable")
     if wrong > ASYMMETRY * size:
         kind = "symmetric" if sign == 1 else "skew"
-        raise CodeError(f"{name}: {wrong / size:.1e} from {kind}: not linearised about a steady state, or damped?")
+        raise CodeError(
+            f"{name}: {wrong / size:.1e} from {kind}: the system is damped, or not linearised about a steady state"
+        )
     return matrix if _acts(matrix) else matrix - difference / 2
 
 

@@ -118,7 +118,9 @@ def fixed_by(clamp: Clamp, nodes: Array) -> Bools:
     """
     fixed = clamp(nodes)
     if not fixed.any(axis=0).all():
-        raise CodeError(f"clamp: fixes {fixed.sum()} displacements of {len(nodes)} nodes: is its x that of the root?")
+        raise CodeError(
+            f"clamp: fixes {fixed.sum()} displacements of {len(nodes)} nodes: check that its x is that of the root"
+        )
     return fixed
 
 

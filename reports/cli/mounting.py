@@ -88,7 +88,7 @@ def angle(option: str, degrees: float | None, most: float = 360.0) -> float | No
     if degrees is not None and not isfinite(degrees):
         raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")
     if degrees is not None and abs(degrees) > most:
-        raise CaseError(f"{option} {degrees:g}: beyond ±{most:g} degrees: another unit? give degrees, as in 2.5")
+        raise CaseError(f"{option} {degrees:g}: beyond ±{most:g} degrees: give degrees, as in 2.5")
     return None if degrees is None else radians(degrees)
 
 

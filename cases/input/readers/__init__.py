@@ -103,7 +103,7 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
             raise CaseError(f"{path}: {what}")
     if module is None:
         raise CaseError(
-            f"{path}: not a blade file of a known format ({', '.join(FORMATS)}): contains no keyword of these formats; were "
-            "the comments behind the values removed?"
+            f"{path}: not a blade file of a known format ({', '.join(FORMATS)}): contains no keyword of these formats: "
+            "keep the comments behind the values"
         )
     return import_module(f".{module}", __package__).read

@@ -190,7 +190,8 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spline(z)[:, :3], axis=0), axis=1))])
     if abs(r[-1] - arc[-1]) > LENGTHS * arc[-1]:
         raise CaseError(
-            f"{sections[-1].at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: are they of the same blade?"
+            f"{sections[-1].at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: check that both are of the "
+            "same blade"
         )
     s = r * (arc[-1] / r[-1])
     own = np.interp(c2[:, 2], z, arc)
@@ -225,12 +226,12 @@ def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterato
             yield command
         elif depth == _DEEP:
             raise CaseError(
-                f"{command.at}: continue_in_file: files are nested more than {depth} deep; circular include?"
+                f"{command.at}: continue_in_file: files are nested more than {depth} deep: check that none includes itself"
             )
         elif len(lengths) > MOST_FILES or sum(lengths) > MOST_LINES:
             raise CaseError(
                 f"{command.at}: continue_in_file: {len(lengths)} files, {sum(lengths)} lines: at most {MOST_FILES} files and "
-                f"{MOST_LINES} lines are read: do they name each other?"
+                f"{MOST_LINES} lines are read: check that none includes itself"
             )
         else:
             yield from _commands(load(_near(main, command)), main, depth + 1, lengths)

@@ -54,7 +54,7 @@ def load(path: Path) -> Text:
     """
     content = files.text(path, older=True)
     if content.count("\n") + content.count("\r") > 2 * MAX_LINES or len(lines := content.splitlines()) > MAX_LINES:
-        raise CaseError(f"{path}: more than {MAX_LINES} lines: is it the right file?")
+        raise CaseError(f"{path}: more than {MAX_LINES} lines: check that it is the right file")
     return Text(path, tuple(lines))
 
 
@@ -95,9 +95,9 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
         cause = (
             f"{rest[0]!r} is not a number:"
             if rest and len(numbers) < len(columns)
-            else "commas in place of decimal points?"
+            else "check for commas in place of decimal points;"
             if len(numbers) == 2 * len(columns)
-            else "a column missing or too many?"
+            else "check for a missing or an additional column;"
         )
         raise CaseError(
             f"{text.at(k)}: {len(numbers)} numbers instead of {len(columns)} ({', '.join(columns[:6])}"
@@ -242,9 +242,7 @@ def _name(text: Text, named: dict[str, tuple[int, str]], names: Iterable[str]) -
         if name.lower() in named:
             return name.lower()
     near = get_close_matches(names[0].lower(), named, 1, cutoff=0.75)
-    cause = (
-        f"is {near[0]!r} at line {named[near[0]][0] + 1} meant for it?" if near else "cut short, or the names removed?"
-    )
+    cause = f"{near[0]!r} at line {named[near[0]][0] + 1} may be meant for it;" if near else "give the whole file, or"
     raise CaseError(
         f"{text.path}: {names[0]}: missing: {cause} add it, the value before its name (`1.0 {names[0]} - …`)"
     )

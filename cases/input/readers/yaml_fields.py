@@ -142,7 +142,7 @@ def fields(text: Text) -> Field:
         line = f": line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise CaseError(f"{text.path}{line}: not YAML: {error.problem}: correct it") from error
     except RecursionError:
-        raise CaseError(f"{text.path}: not YAML: nested too deeply: is it the right file?") from None
+        raise CaseError(f"{text.path}: not YAML: nested too deeply: check that it is the right file") from None
     except yaml.YAMLError as error:
         raise CaseError(f"{text.path}: not YAML: {' '.join(str(error).split())}: correct it") from error
     if node is None:
@@ -163,7 +163,7 @@ def _bounded(text: Text, whole: str) -> None:
         depth += opens - isinstance(event, (yaml.SequenceEndEvent, yaml.MappingEndEvent))
         if depth > DEEPEST or count > MOST_NODES:
             what = f"{DEEPEST} lists or keys within each other" if depth > DEEPEST else f"{MOST_NODES} values"
-            raise CaseError(f"{text.at(event.start_mark.line)}: more than {what}: is it the right file?")
+            raise CaseError(f"{text.at(event.start_mark.line)}: more than {what}: check that it is the right file")
 
 
 class _Reusing(yaml.SafeLoader):

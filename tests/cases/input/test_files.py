@@ -74,7 +74,7 @@ def test_a_row_keeps_its_line_behind_comments_and_quotes(tmp_path: Path) -> None
 
 
 BAD = {
-    "empty": (b"", "empty: was it written to the end?"),
+    "empty": (b"", "empty: check that it was written to the end"),
     "blank": (b"\xef\xbb\xbf \r\n\t\n", "empty"),
     "binary": (b"\x7fELF\x02\x01\x00\x00", "not a text file"),
     "UTF-16 without a mark": ("name".encode("utf-16-le"), "UTF-16"),

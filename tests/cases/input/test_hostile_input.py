@@ -51,7 +51,7 @@ def test_only_regular_files_are_opened(folder: Path, name: str, why: str) -> Non
 
 def test_decks_of_too_many_lines_are_not_taken_apart(tmp_path: Path) -> None:
     (tmp_path / "long.dat").write_text("1\n" * (MAX_LINES + 1))
-    with pytest.raises(CaseError, match=r"long.dat: more than 250000 lines: is it the right file\?"):
+    with pytest.raises(CaseError, match=r"long.dat: more than 250000 lines: check that it is the right file"):
         readers.read(tmp_path / "long.dat")
 
 

@@ -184,7 +184,7 @@ def test_bad_input_ends_in_one_line(write, old: str, new: str, phrase: list[str]
 
 BAD_TABLES = [
     (None, ["table.csv: no such file", "relative to its file"]),
-    ("", ["empty: was it written to the end?"]),
+    ("", ["empty: check that it was written to the end"]),
     ("# only this\n", ["only comments"]),
     (TABLE.replace("0,90", "0.5,90").replace("\n1,0", "\n0.2,0"), ["fraction [-]: last is 0.2"]),
     (TABLE.replace("0,90", "0.5,90"), ["stations: first is 5 m"]),

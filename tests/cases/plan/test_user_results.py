@@ -172,7 +172,7 @@ def test_the_output_of_bmodes_is_read_with_the_speed_of_its_input(tmp_path: Path
 
 
 BAD = [
-    ("", "empty: was it written"),
+    ("", "empty: check that it was written"),
     (HEAD, "only a header"),
     ("speed [rad/s], frequency [rad/s]\n10, 11.7\n", "line 1: column 'mode' is missing"),
     (
@@ -183,7 +183,7 @@ BAD = [
     ("frequency [Hz], mode\n1, 1\n", "line 1: 0 columns of speed: give exactly one of speed [rad/s]"),
     ("speed [rpm], speed [rad/s], frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: 2 columns of speed"),
     ("speed [rpm], mode, frequency [Hz], mode\n1, 1, 1, 1\n", "line 1: column 'mode' occurs 2 times"),
-    (HEAD + "10, 11.7\n", "line 2: 2 columns instead of 3: a missing or stray comma?"),
+    (HEAD + "10, 11.7\n", "line 2: 2 columns instead of 3: check for a missing or stray comma"),
     (HEAD + "10, 11,7, edgewise 1\n", "line 2: 4 columns instead of 3"),
     (HEAD + "ten, 11.7, edgewise 1\n", "line 2: speed [rad/s]: 'ten' is not a number, 0 or more"),
     (HEAD + "-10, 11.7, edgewise 1\n", "line 2: speed [rad/s]: '-10' is not a number, 0 or more"),

@@ -114,7 +114,7 @@ def test_within_a_character(tmp_path: Path) -> None:
 @pytest.mark.parametrize(
     ("text", "phrase"),
     [
-        ('{"commit": "abc"}\n', "line 1: not a run .*date.*another version"),
+        ('{"commit": "abc"}\n', "line 1: not a run .*date.*this version"),
         ('\n{"commit": 1}\n', "line 2: not a run .*commit"),
         ("a,b\nc,d\n", "line 1: not JSON.*southwell history"),
     ],

@@ -236,7 +236,7 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
     if mount.length is not None and abs(mount.length - length) > 0.02 * length:
         raise CaseError(
             f"length: {mount.length:g} m by the main file or --length, {length:g} m by the key points: "
-            "are they of the same blade?"
+            "check that both are of the same blade"
         )
     at = [_between(own, m, s) for m in (stiffness, mass)]
     try:
