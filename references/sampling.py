@@ -16,7 +16,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Sections:
+class SampledSections:
     """Properties of uncoupled sections at k arc lengths, each (k,), in section (twisted) axes.
 
     Attributes:
@@ -40,7 +40,7 @@ class Sections:
     twist: Array
 
 
-def sample(blade: Blade, s: ArrayLike) -> Sections:
+def sample(blade: Blade, s: ArrayLike) -> SampledSections:
     """Engineering properties at arc lengths ``s`` (m).
 
     Raises:
@@ -51,7 +51,7 @@ def sample(blade: Blade, s: ArrayLike) -> Sections:
             f"{blade.name}: coupled sections (off-diagonal entries); this code accepts uncoupled sections only"
         )
     stiffness, mass = stiffness_at(blade, s), mass_at(blade, s)
-    return Sections(
+    return SampledSections(
         EA=stiffness[:, AXIAL, AXIAL],
         GA_y=stiffness[:, SHEAR_Y, SHEAR_Y],
         GA_z=stiffness[:, SHEAR_Z, SHEAR_Z],

@@ -37,7 +37,7 @@ class MachineRequest:
 
 
 @dataclass(frozen=True)
-class Line:
+class ModeLine:
     """One mode over speed.
 
     Attributes:
@@ -92,7 +92,7 @@ class MachineDiagram:
     turbine: Turbine
     request: MachineRequest
     omega: Array
-    lines: tuple[Line, ...]
+    lines: tuple[ModeLine, ...]
     crossings: tuple[Crossing, ...]
     nearest: tuple[Nearest, ...]
     solved: tuple[TurbineModes, ...]
@@ -154,10 +154,10 @@ def _doubt(coarse: Sequence[TurbineModes], fine: Sequence[TurbineModes]) -> Arra
     return SAFETY * np.maximum.accumulate(np.max(changes, axis=0))
 
 
-def _line(solved: Sequence[TurbineModes], places: Sequence[int], doubt: Array) -> Line:
+def _line(solved: Sequence[TurbineModes], places: Sequence[int], doubt: Array) -> ModeLine:
     names = tuple(modes.names[k] for modes, k in zip(solved, places, strict=True))
     turning = [name for name, modes in zip(names, solved, strict=True) if modes.omega] or list(names)
-    return Line(
+    return ModeLine(
         name=Counter(turning).most_common(1)[0][0],
         frequencies=np.array([modes.frequencies[k] for modes, k in zip(solved, places, strict=True)]),
         names=names,
@@ -167,7 +167,7 @@ def _line(solved: Sequence[TurbineModes], places: Sequence[int], doubt: Array) -
     )
 
 
-def _numbered(lines: Sequence[Line]) -> tuple[Line, ...]:
+def _numbered(lines: Sequence[ModeLine]) -> tuple[ModeLine, ...]:
     """The lines, of which those of equal name are numbered from the second on."""
     seen: Counter[str] = Counter()
     out = []
@@ -178,7 +178,7 @@ def _numbered(lines: Sequence[Line]) -> tuple[Line, ...]:
     return tuple(out)
 
 
-def _crossings(index: int, line: Line, omega: Array, per_rev: Sequence[int]) -> list[Crossing]:
+def _crossings(index: int, line: ModeLine, omega: Array, per_rev: Sequence[int]) -> list[Crossing]:
     fine = np.linspace(omega[0], omega[-1], _POINTS)
     values = _between(line, omega, fine)
     out = []
@@ -190,7 +190,7 @@ def _crossings(index: int, line: Line, omega: Array, per_rev: Sequence[int]) -> 
     return out
 
 
-def _margins(lines: Sequence[Line], omega: Array, request: MachineRequest) -> tuple[Nearest, ...]:
+def _margins(lines: Sequence[ModeLine], omega: Array, request: MachineRequest) -> tuple[Nearest, ...]:
     if not request.operating:
         return ()
     low, high = request.operating
@@ -209,6 +209,6 @@ def _margins(lines: Sequence[Line], omega: Array, request: MachineRequest) -> tu
     return tuple(out)
 
 
-def _between(line: Line, omega: Array, speeds: Array) -> Array:
+def _between(line: ModeLine, omega: Array, speeds: Array) -> Array:
     """Frequencies between the solved speeds, by the straight line of f² over Ω²."""
     return np.sqrt(np.interp(speeds**2, omega**2, line.frequencies**2))

@@ -59,7 +59,7 @@ class Mass:
 
 
 @dataclass(frozen=True)
-class Sections:
+class SectionProperties:
     """Properties at each station, in section axes, m and rad; (n,) each, centres (n, 2) along y and z.
 
     Attributes:
@@ -114,7 +114,7 @@ def _properties(inertia: Array) -> Mass:
     return Mass(float(mass), centre, inertia[3:, 3:])
 
 
-def sections(blade: Blade) -> Sections:
+def sections(blade: Blade) -> SectionProperties:
     """Centres, principal axes and engineering stiffnesses of the sections at the stations."""
     m = blade.mass
     mass = m[:, 0, 0]
@@ -130,7 +130,7 @@ def sections(blade: Blade) -> Sections:
     axial = s[:, AXIAL, AXIAL] + (s[:, AXIAL, BEND_Y:] * alone).sum(1)
     principal, flap, edge = _axes(flexural)
     own = m[:, 4:, 4:] - mass[:, None, None] * _spread(mass_centre)
-    return Sections(
+    return SectionProperties(
         mass_centre=mass_centre,
         tension_centre=tension,
         shear_centre=shear,

@@ -13,7 +13,7 @@ from ..input import files
 from ..input.errors import CaseError
 from ..input.readers.text import number
 from .findings import DEFECT, LIMIT, Finding, count, listed
-from .orders import Line, order_lines
+from .orders import TrackedFrequency, order_lines
 
 Array = NDArray[np.float64]
 
@@ -108,7 +108,11 @@ def findings(table: ModeTable) -> Iterator[Finding]:
     if table.unit == "Hz":
         nothing = np.zeros(len(table.points))
         yield from order_lines(
-            [Line(n, table.points, f, nothing) for n, f in zip(table.names, table.frequencies, strict=True)], table.name
+            [
+                TrackedFrequency(n, table.points, f, nothing)
+                for n, f in zip(table.names, table.frequencies, strict=True)
+            ],
+            table.name,
         )
     grow = [name for name, d in zip(table.names, table.damping, strict=True) if (d < 0).any()]
     if grow:

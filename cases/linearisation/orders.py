@@ -18,7 +18,7 @@ MIN_RANGE = 1.1
 
 
 @dataclass(frozen=True)
-class Line:
+class TrackedFrequency:
     """Frequencies of one row of a Campbell table.
 
     Attributes:
@@ -34,7 +34,7 @@ class Line:
     uncertainty: Array
 
 
-def order_lines(lines: Sequence[Line], where: str) -> tuple[Finding, ...]:
+def order_lines(lines: Sequence[TrackedFrequency], where: str) -> tuple[Finding, ...]:
     """Rows whose frequencies are one multiple of the rotor speed at three or more operating points."""
     out = []
     for line in lines:

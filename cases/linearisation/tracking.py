@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 from .findings import LIMIT, Finding
 from .judged import JudgedSet, TrackedMode
 from .modes import Mode
-from .orders import Line, order_lines
+from .orders import TrackedFrequency, order_lines
 
 MIN_OVERLAP = 0.3
 """Overlap |l r| of left and right eigenvectors of two operating points below which a mode is not continued."""
@@ -62,7 +62,7 @@ def lines(sets: Sequence[JudgedSet], tracked: Sequence[TrackedMode]) -> tuple[Fi
     speeds = np.array([judged.each.omega for judged in sets]) / (2 * np.pi)
     return order_lines(
         [
-            Line(
+            TrackedFrequency(
                 mode.name,
                 speeds,
                 np.array([np.nan if m is None else m.frequency for m in mode.at]),

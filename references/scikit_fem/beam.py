@@ -20,7 +20,7 @@ from ..cache_last import cache_last
 from ..matrices.quadratic import gyroscopic_modes
 from ..protocol.fingerprint import Fingerprint, of_matrix, tip_flexibility
 from ..protocol.interface import BladeAdapter, CodeError, Independence, extra
-from ..sampling import Sections, sample
+from ..sampling import SampledSections, sample
 from ..theories.grading import element_ends
 from . import forms as forms
 from .assembly import bilinear, skfem
@@ -198,14 +198,14 @@ def _parts(blade: Blade, basis: Any) -> list[Part]:
     return parts
 
 
-def _sections(blade: Blade, basis: Any) -> tuple[Array, Sections]:
+def _sections(blade: Blade, basis: Any) -> tuple[Array, SampledSections]:
     """The quadrature points and the properties there (elements, points)."""
     x = np.array(basis.global_coordinates())[0]
     at = sample(blade, x.ravel())
-    return x, Sections(**{f.name: getattr(at, f.name).reshape(x.shape) for f in fields(at)})
+    return x, SampledSections(**{f.name: getattr(at, f.name).reshape(x.shape) for f in fields(at)})
 
 
-def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Array:
+def _stretch(blade: Blade, parts: list[Part], at: SampledSections, omega: float) -> Array:
     """Steady displacement along x: ``(EA U')' + μ Ω² (R + x + U) = 0``, which is linear for any amplitude."""
     fem = skfem()
     load = fem.LinearForm(forms.load)
@@ -217,7 +217,7 @@ def _stretch(blade: Blade, parts: list[Part], at: Sections, omega: float) -> Arr
     return fem.solve(*fem.condense(K, f, D=steady_basis.get_dofs("root").all("u")))
 
 
-def _untwist(parts: list[Part], at: Sections, omega: float) -> Array:
+def _untwist(parts: list[Part], at: SampledSections, omega: float) -> Array:
     """Steady rotation of the sections about x by the propeller moment: ``(GJ Φ')' + Ω² J_yz(Φ) = 0``, by Newton's method."""
     fem = skfem()
     load = fem.LinearForm(forms.load)

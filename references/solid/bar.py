@@ -21,7 +21,7 @@ from ...core.blade import BEND_Y, BEND_Z, Blade, uniform
 from ...core.modes import Modes
 from ..cache_last import cache_last
 from ..protocol.interface import CodeError
-from ..sampling import Sections, sample
+from ..sampling import SampledSections, sample
 from .materials import Orthotropic
 from .mesh import Bricks, straight_bricks
 
@@ -113,7 +113,7 @@ def _stretching(blade: Blade) -> float:
     return float(at.mass[0] / at.EA[0] * blade.length * (blade.hub_radius + blade.length / 2))
 
 
-def _turning(modes: Modes, at: Sections) -> NDArray[np.bool_]:
+def _turning(modes: Modes, at: SampledSections) -> NDArray[np.bool_]:
     """(m,) whether each mode is torsional: its rotation times the polar radius of gyration exceeds its displacement."""
     radius = np.sqrt((at.EI_y[0] + at.EI_z[0]) / at.EA[0])
     return radius * np.abs(modes.shapes[:, :, 3]).max(1) > np.abs(modes.shapes[:, :, :3]).max((1, 2))

@@ -10,7 +10,7 @@ from scipy.interpolate import PPoly
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, Blade, clamped, coupled, straight
 from ..protocol.fingerprint import Fingerprint, of_points
 from ..protocol.interface import BladeAdapter
-from ..sampling import Sections, sample
+from ..sampling import SampledSections, sample
 from .spectral import gauss, intervals
 
 Array = NDArray[np.float64]
@@ -40,7 +40,7 @@ class BeamPoints:
     ends: Array
     s: Array
     weight: Array
-    sections: Sections
+    sections: SampledSections
     mass: Array
     I_x: Array
     I_y: Array

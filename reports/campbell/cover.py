@@ -18,7 +18,7 @@ from .properties import COLUMNS, PROPERTIES, cell, facts, picked, rows
 
 
 @dataclass(frozen=True)
-class Origin:
+class InputOrigin:
     """Where a blade comes from.
 
     Attributes:
@@ -32,10 +32,10 @@ class Origin:
     unused: Sequence[str] = ()
 
 
-UNKNOWN = Origin()
+UNKNOWN = InputOrigin()
 
 
-def cover(origin: Origin) -> str:
+def cover(origin: InputOrigin) -> str:
     """The section on the input: origin, digests of the files, date and versions.
 
     Raises:
@@ -68,7 +68,7 @@ def properties(blade: Blade) -> str:
     )
 
 
-def unused(origin: Origin) -> str:
+def unused(origin: InputOrigin) -> str:
     """The section on quantities of the files that are not used; nothing is stated of a blade of unknown origin."""
     if origin is UNKNOWN:
         return ""

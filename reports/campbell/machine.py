@@ -8,13 +8,13 @@ from pathlib import Path
 import numpy as np
 from matplotlib.figure import Figure
 
-from ...cases.campbell.machine import Line, MachineDiagram
+from ...cases.campbell.machine import MachineDiagram, ModeLine
 from ...cases.input import atomic
 from ..shared.certain import certain, relative
 from ..shared.style import COLOURS, MUTED, WIDTH, plot_style, save, title
 from ..shared.units import Units
 from . import cover
-from .cover import Origin
+from .cover import InputOrigin
 from .tables import TOO_NEAR, Sheet, markdown
 
 PAGE = "campbell.md"
@@ -55,7 +55,7 @@ def _modes(diagram: MachineDiagram, units: Units) -> Sheet:
     return Sheet("Modes", head, tuple(rows), f"{FRAME} {NAMED}")
 
 
-def _changes(diagram: MachineDiagram, line: Line, units: Units) -> str:
+def _changes(diagram: MachineDiagram, line: ModeLine, units: Units) -> str:
     """Where a line takes another name, after the first speed."""
     own = line.name.partition(" (")[0]
     other = [k for k, name in enumerate(line.names) if name != own and diagram.omega[k]]
@@ -142,7 +142,7 @@ def _places(diagram: MachineDiagram, units: Units, top: float) -> list[tuple[flo
 
 
 def write(
-    diagram: MachineDiagram, folder: Path, units: Units, command: str, origin: Origin, notes: Sequence[str]
+    diagram: MachineDiagram, folder: Path, units: Units, command: str, origin: InputOrigin, notes: Sequence[str]
 ) -> tuple[Path, ...]:
     """Write the figure (SVG and PNG), ``campbell.csv`` and the page; return the paths.
 

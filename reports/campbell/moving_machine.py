@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cases.campbell.machine import Line, MachineDiagram
+from ...cases.campbell.machine import MachineDiagram, ModeLine
 from ...cases.input import atomic
 from ...core.turbine.motion import Motion
 from ..shared.certain import certain, relative
@@ -101,7 +101,7 @@ def lines(diagram: MachineDiagram, units: Units) -> Any:
     return figure
 
 
-def _frequency(line: Line, k: int, units: Units) -> str:
+def _frequency(line: ModeLine, k: int, units: Units) -> str:
     return f"{certain(float(line.frequencies[k]) * units.frequencies, line.uncertainty)} {units.frequency}"
 
 

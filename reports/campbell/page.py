@@ -17,7 +17,7 @@ from . import cover, csv_tables, encounters, shapes, span
 from . import figure as figures
 from . import tables as tables
 from .confirmation import TITLE as CONFIRMATION
-from .cover import UNKNOWN, Origin
+from .cover import UNKNOWN, InputOrigin
 
 PAGE = "campbell.md"
 
@@ -31,7 +31,7 @@ def write(
     folder: Path,
     units: Units,
     command: str,
-    origin: Origin = UNKNOWN,
+    origin: InputOrigin = UNKNOWN,
     extra: Sequence[tables.Sheet] = (),
     user_results: Sequence[UserResults] = (),
 ) -> tuple[Path, ...]:
@@ -87,7 +87,9 @@ def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
     return vector, raster
 
 
-def _page(diagram: Campbell, k: int, units: Units, command: str, origin: Origin, extra: Sequence[tables.Sheet]) -> str:
+def _page(
+    diagram: Campbell, k: int, units: Units, command: str, origin: InputOrigin, extra: Sequence[tables.Sheet]
+) -> str:
     omega = float(diagram.tracks.omega[k])
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",

@@ -3,7 +3,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...cases.input.properties import Mass, Sections, about_hub, about_root, farthest, tip
+from ...cases.input.properties import Mass, SectionProperties, about_hub, about_root, farthest, tip
 from ...core.blade import Blade, straight
 
 Array = NDArray[np.float64]
@@ -61,7 +61,7 @@ def _body(body: Mass) -> str:
     return f"centre x {x:.5g}, y {y:.5g}, z {z:.5g} m from the tip; moments of inertia about it {moments} kg m²; section axes"
 
 
-def rows(blade: Blade, sampled: Sections) -> Array:
+def rows(blade: Blade, sampled: SectionProperties) -> Array:
     """(n, columns) numbers of all stations, columns as in ``COLUMNS``."""
     stiff = (blade.mass[:, 0, 0], sampled.EI_flap, sampled.EI_edge, sampled.GJ, sampled.EA, np.degrees(blade.twist))
     return np.column_stack([blade.stations, *stiff, sampled.mass_centre, sampled.tension_centre, sampled.shear_centre])

@@ -8,7 +8,7 @@ from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
 from ...cases.input import atomic
-from ...cases.input.properties import Sections, sections
+from ...cases.input.properties import SectionProperties, sections
 from ...core.blade import Blade
 from ..shared.style import COLOURS, MUTED, WIDTH, decades, plot_style, power
 
@@ -51,7 +51,7 @@ def draw(blade: Blade) -> Figure:
     return figure
 
 
-def _centres(sampled: Sections, k: int) -> Lines:
+def _centres(sampled: SectionProperties, k: int) -> Lines:
     return [(name, getattr(sampled, f"{name}_centre")[:, k]) for name in ("mass", "tension", "shear")]
 
 

@@ -172,10 +172,10 @@ def _paired(values: Array, field: Field, grid_of: Field) -> Array:
     return values
 
 
-Sections = tuple[Array, Array, Array, tuple[int, ...]]
+SectionLists = tuple[Array, Array, Array, tuple[int, ...]]
 
 
-def _rows(elastic: Field) -> Sections:
+def _rows(elastic: Field) -> SectionLists:
     """windIO 1: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
     grids, matrices = [], []
     for key in ("stiff_matrix", "inertia_matrix"):
@@ -189,7 +189,7 @@ def _rows(elastic: Field) -> Sections:
     return *_together(grids, [_checked(stiffness, fault, at), mass]), loose
 
 
-def _lists(elastic: Field) -> Sections:
+def _lists(elastic: Field) -> SectionLists:
     """windIO 2: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
     matrix = elastic.get("stiffness_matrix")
     grids = [_grid(matrix)]

@@ -30,7 +30,7 @@ from ....core.modes import Modes
 from ...campbell import changes as changes_table
 from ...campbell import confirmation as confirmation_table
 from ...campbell import interactive, page, tables
-from ...campbell.cover import Origin
+from ...campbell.cover import InputOrigin
 from ...campbell.tables import Sheet
 from ...documents import html as as_html
 from ...documents import pdf as as_pdf
@@ -208,7 +208,7 @@ def command(
         doubts = interpolation.warnings(subject.blade, modes)
         _show(diagram, units, subject, extra, doubts)
         kept &= tables.margins_kept(diagram)
-        origin = Origin((*about, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))
+        origin = InputOrigin((*about, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))
         with writable(f"--out {out}"):
             written = page.write(diagram, folder, units, typed(), origin, extra, files)
             if html:

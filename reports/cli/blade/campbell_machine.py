@@ -12,7 +12,7 @@ from ....cases.input.readers.source import Mount
 from ....cases.input.writing import writable
 from ...campbell import interactive, moving_machine, tables
 from ...campbell import machine as pages
-from ...campbell.cover import Origin
+from ...campbell.cover import InputOrigin
 from ...documents import html as as_html
 from ...shared import not_used
 from ...shared.console import output
@@ -80,7 +80,7 @@ def run(
     for line in about[1:]:
         console.print(line, style="dim", markup=False)
     not_used.show(read.source.unused, console)
-    origin = Origin(about, read.source.files, not_used.lines(read.source.unused))
+    origin = InputOrigin(about, read.source.files, not_used.lines(read.source.unused))
     with writable(f"--out {out}"):
         written = pages.write(diagram, out, units, typed(), origin, about[:1])
         if html:

@@ -31,7 +31,7 @@ Array = NDArray[np.float64]
 COLUMNS = ("PrecrvRef", "PreswpRef", "FlpcgOf", "EdgcgOf", "FlpEAOf", "EdgEAOf")
 
 
-class Line(NamedTuple):
+class ReferenceLine(NamedTuple):
     """The elastic axis: arc lengths (n,) and points (n, 3) in blade axes, and the mass centre (n, 2) from it along the
     section's y and z; m."""
 
@@ -40,7 +40,7 @@ class Line(NamedTuple):
     mass_centre: Array
 
 
-def line(z: Array, offsets: dict[str, Array], twist: Array) -> Line:
+def line(z: Array, offsets: dict[str, Array], twist: Array) -> ReferenceLine:
     """The elastic axis and the mass centre at stations.
 
     Args:
@@ -53,6 +53,6 @@ def line(z: Array, offsets: dict[str, Array], twist: Array) -> Line:
     points = np.stack([z, -swept, curved], axis=1) + np.einsum("nij,nj->ni", rotation(0, twist), within)
     mass_centre = np.stack([edge_axis - edge_mass, flap_mass - flap_axis], axis=1)
     if not points[:, 1:].any():
-        return Line(z, points, mass_centre)
+        return ReferenceLine(z, points, mass_centre)
     axis = measured(CubicSpline(z, points[:, 1:], bc_type="natural"), z)
-    return Line(axis.arc, points, mass_centre)
+    return ReferenceLine(axis.arc, points, mass_centre)
