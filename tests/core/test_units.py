@@ -55,13 +55,10 @@ def test_predicates_and_frequencies_do_not_depend_on_units(seed: int, kg: float,
     blade, omega = random_blade(np.random.default_rng(seed))
     other = in_units(blade, kg, m, s)
     assert [holds(other) for holds in PREDICATES] == [holds(blade) for holds in PREDICATES]
-    here, solution = modes(blade, omega, 16, 5), modes(other, omega / s, 16, 5)
-    np.testing.assert_allclose(
-        solution.frequencies * s / here.frequencies,
-        1.0,
-        rtol=0,
-        atol=10 * max(here.rounding.max(), solution.rounding.max()),
-    )
+    solution, scaled = modes(blade, omega, 16, 5), modes(other, omega / s, 16, 5)
+    # not to rounding: products with K lose up to 1e-8 in blades with soft springs or rigid shear, more than ``rounding`` states
+    change = np.abs(scaled.frequencies * s / solution.frequencies - 1.0)
+    assert (change <= np.minimum(solution.uncertainty, scaled.uncertainty)).all()
 
 
 @settings(max_examples=60, deadline=None)

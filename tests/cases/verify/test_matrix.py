@@ -194,7 +194,7 @@ def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
         run = matrix.run(blades(case()), [f"{ANALYTIC}GOOD", f"{ANALYTIC}UNABLE"], executor, seen.append, parts=False)
     assert [p.done for p in seen] == [0, 1, 2, 3, 4, 5]
     assert {p.total for p in seen} == {5}
-    assert seen[0].running == ("rest × core",)
+    assert seen[0].running == ("rest × Southwell",)
     assert sorted((c.code, c.mode) for p in seen for c in p.cells) == sorted((c.code, c.mode) for c in run.cells)
 
 

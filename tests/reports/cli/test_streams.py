@@ -62,7 +62,7 @@ def test_a_defect_of_the_program_has_a_status_of_its_own(
     def fails(_: object) -> None:
         raise ZeroDivisionError("division by zero")
 
-    monkeypatch.setattr(report, "found", fails)
+    monkeypatch.setattr(report, "run_in", fails)
     with pytest.raises(SystemExit) as ended:
         cli.main(["report", str(tmp_path)])
     assert ended.value.code == 70
