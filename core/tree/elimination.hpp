@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "matrices.hpp"
 
@@ -16,9 +17,9 @@ struct Factors {
     Matrix<D - 6, 6>* reaction;
 };
 
-// Remove the directions of ρ that a joint clamps from a matrix, and give them a stiffness: they do not move.
+// Remove the directions of ρ that a joint clamps from a matrix.
 template <int D>
-void clamp(const Matrix6& clamped, double stiffness, Matrix<D, D>& out) {
+void project(const Matrix6& clamped, Matrix<D, D>& out) {
     for (int pass = 0; pass < 2; ++pass) {  // of the rows, then of the columns
         for (int j = 0; j < D; ++j) {
             double part[6] = {};
@@ -27,7 +28,16 @@ void clamp(const Matrix6& clamped, double stiffness, Matrix<D, D>& out) {
             for (int i = 0; i < 6; ++i) (pass ? out[j][6 + i] : out[6 + i][j]) -= part[i];
         }
     }
-    add(stiffness * clamped, 6, 6, out);
+}
+
+// Give the directions that a joint clamps the size of the stiffness of the others: they do not move, whatever their stiffness,
+// and another size would cost digits of the inverse.
+template <int D>
+void clamp(const Matrix6& clamped, Matrix<D, D>& out) {
+    project(clamped, out);
+    double size = 0.0;
+    for (int i = 6; i < 12; ++i) size += std::abs(out[i][i]);
+    add((size > 0.0 ? size : 1.0) * clamped, 6, 6, out);
 }
 
 // Fill the factors; returns the worst result of ``invert`` over all elements.
@@ -39,10 +49,10 @@ int eliminate(const ElementMatrices<D>& K, const Links& links, const Factors<D>&
     for (int k = K.n - 1; k >= 0; --k) {
         Matrix<D, D> H = K.element[k];
         add_at_end(links.to_child[k], P[k + 1], H);
-        if (links.clamped) clamp(links.clamped[k], 1.0, H);
+        if (links.clamped) clamp(links.clamped[k], H);
         kind = std::min(kind, invert(H, 6));
         if (kind == 0) break;
-        if (links.clamped) clamp(links.clamped[k], 0.0, H);
+        if (links.clamped) project(links.clamped[k], H);
         add(block<6, 6>(H, 0, 0), 0, 0, P[links.parent[k]]);
         out.transfer[k] = -1.0 * transposed(block<d, 6>(H, 6, 0));
         out.reaction[k] = transposed(block<6, d>(H, 0, 6));
@@ -114,8 +124,8 @@ int negative_pivots(const ElementMatrices<D>& K, const ElementMatrices<D>& C, co
         add_at_end(links.to_child[k], P[k + 1], re);
         add_at_end(links.to_child[k], Q[k + 1], im);
         if (links.clamped) {
-            clamp(links.clamped[k], 1.0, re);
-            clamp(links.clamped[k], 0.0, im);
+            clamp(links.clamped[k], re);
+            project(links.clamped[k], im);
         }
         for (int p = D - 1; p > 5; --p) {
             if (re[p][p] < 0.0) ++count;
