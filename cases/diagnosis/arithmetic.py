@@ -61,12 +61,12 @@ def arithmetic(given: Array, reference: Array, labels: Sequence[Label], every: S
     start = _size(plain)
     if not start >= LARGE:
         return plain
-    found = [
+    candidates = [
         Arithmetic(", ".join(filter(None, (unit, order))), converted, other)
         for unit, converted in _units(given)
         for order, other in _orders(converted, reference, labels, every)
     ]
-    best = min(found[1:], key=lambda one: _size(one) * (1.5 if "," in one.name else 1.0))
+    best = min(candidates[1:], key=lambda candidate: _size(candidate) * (1.5 if "," in candidate.name else 1.0))
     return best if _size(best) <= min(REMAINS * start, CLOSE) else plain
 
 
@@ -76,9 +76,9 @@ def difference(given: Array, reference: Array) -> Array:
         return np.log(given / reference)
 
 
-def _size(one: Arithmetic) -> float:
+def _size(candidate: Arithmetic) -> float:
     """Root mean square of the difference; infinite if fewer numbers can be compared."""
-    values = difference(one.given, one.reference)[np.isfinite(one.given)]
+    values = difference(candidate.given, candidate.reference)[np.isfinite(candidate.given)]
     return float(np.sqrt(np.mean(values**2))) if len(values) and np.isfinite(values).all() else np.inf
 
 

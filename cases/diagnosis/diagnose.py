@@ -74,7 +74,7 @@ class Diagnosis:
             end = f"all frequencies agree within {percent(self.largest)}"
             return f"{first}{end}" if first else end
         if self.cause:
-            others = "".join(f"; or {described(one.changes)}" for one in self.ties)
+            others = "".join(f"; or {described(cause.changes)}" for cause in self.ties)
             return f"{first}as Southwell's own solver {described(self.cause.changes)} ({self._remainder(self.cause)}){others}"
         hint = f"; {self.indication}" if self.indication else ""
         return f"{first}no known cause of {percent(self.largest)}{hint}"
@@ -131,7 +131,9 @@ def explain(problem: Problem, given: Array, uncertainty: float = UNCERTAINTY) ->
     given = np.where(np.isfinite(reference) & (given > 0), given, np.nan)
     if not np.isfinite(given).any():
         return Diagnosis(np.nan, uncertainty, "", (), "", (), (), ())
-    every = [one.frequencies if one else np.zeros(0) for one in spectra.solved(problem, (), spectra.FINE)]
+    every = [
+        spectrum.frequencies if spectrum else np.zeros(0) for spectrum in spectra.solved(problem, (), spectra.FINE)
+    ]
     converted = arithmetic(given, reference, problem.labels, every)
     D = difference(converted.given, converted.reference)
     largest = float(np.nanmax(np.abs(np.expm1(D))))
@@ -166,13 +168,15 @@ def _rows(omega: Array, given: Array) -> list[int]:
 def _names(problem: Problem, reference: Array) -> list[list[str]]:
     """(S × M) names of the solver's modes with these frequencies."""
     out = []
-    for row, (one, named) in enumerate(
+    for row, (spectrum, named) in enumerate(
         zip(spectra.solved(problem, (), spectra.FINE), spectra.names(problem), strict=True)
     ):
         line = []
         for value in reference[row]:
-            known = one is not None and np.isfinite(value)
-            line.append(named[int(np.abs(one.frequencies - value).argmin())] if known and one is not None else "")
+            known = spectrum is not None and np.isfinite(value)
+            line.append(
+                named[int(np.abs(spectrum.frequencies - value).argmin())] if known and spectrum is not None else ""
+            )
         out.append(line)
     return out
 
@@ -200,7 +204,7 @@ def percent(value: float) -> str:
 
 def cause_lines(diagnosis: Diagnosis) -> tuple[str, ...]:
     """The most probable causes, one line each: what they explain, what remains, and the probability by chance."""
-    return tuple(_cause(one) for one in diagnosis.causes[:SHOWN] if one.chance <= LIKELY)
+    return tuple(_cause(cause) for cause in diagnosis.causes[:SHOWN] if cause.chance <= LIKELY)
 
 
 def _cause(cause: Cause) -> str:
@@ -211,10 +215,10 @@ def _cause(cause: Cause) -> str:
 
 def mode_lines(diagnosis: Diagnosis) -> tuple[str, ...]:
     """One line for each mode: the difference at rest, and both slopes."""
-    return tuple(f"{one.mode}: {_split(one)}" for one in diagnosis.modes if np.isfinite(one.offset))
+    return tuple(f"{mode.mode}: {_split(mode)}" for mode in diagnosis.modes if np.isfinite(mode.offset))
 
 
-def _split(one: ModeSplit) -> str:
-    rest = f"at rest {100.0 * one.offset:+.3f} %"
-    slope = f", φ {one.slope:.4g} instead of {one.slope_reference:.4g}" if np.isfinite(one.slope) else ""
+def _split(mode: ModeSplit) -> str:
+    rest = f"at rest {100.0 * mode.offset:+.3f} %"
+    slope = f", φ {mode.slope:.4g} instead of {mode.slope_reference:.4g}" if np.isfinite(mode.slope) else ""
     return f"{rest}{slope}".replace("-", "−")

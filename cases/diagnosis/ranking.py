@@ -104,11 +104,11 @@ def chance(share: float, dimensions: int, kinds: int, fitted: int = 0) -> float:
         return 1.0
     share = min(max(share, 0.0), 1.0)
     if fitted:
-        one = float(betainc((dimensions - fitted) / 2, fitted / 2, share))
+        probability = float(betainc((dimensions - fitted) / 2, fitted / 2, share))
     else:
         cap = 0.5 * float(betainc((dimensions - 1) / 2, 0.5, share)) if dimensions > 1 else 0.5
-        one = cap * min(1.0, 2.0 * np.sqrt(share))
-    return min(1.0, kinds * one)
+        probability = cap * min(1.0, 2.0 * np.sqrt(share))
+    return min(1.0, kinds * probability)
 
 
 def rank(problem: Problem, difference: Array, uncertainty: float, shown: int = 5) -> Ranking:
@@ -124,19 +124,19 @@ def rank(problem: Problem, difference: Array, uncertainty: float, shown: int = 5
     single, invisible = search.fixed()
     causes = [search.cause(((name, 1.0),), len(single)) for name in single]
     if not search.is_enough(causes):
-        factors = (name for name, one in problem.hypotheses.items() if one.fitted)
+        factors = (name for name, hypothesis in problem.hypotheses.items() if hypothesis.fitted)
         slopes = {name: effect(problem, ((name, FIT_STEP),)) / np.log(FIT_STEP) for name in factors}
         slopes = {name: slope for name, slope in slopes.items() if search.is_visible(0.1 * slope)}
         causes += search.fitted((), slopes, FITTED)
         if not search.is_enough(causes):
             causes += search.pairs(single, slopes)
     best = _ordered(causes)
-    ties = tuple(one for one in best[1:] if one.named and search.is_tied(one, best[0])) if best else ()
+    ties = tuple(cause for cause in best[1:] if cause.named and search.is_tied(cause, best[0])) if best else ()
     return Ranking(tuple(best[:shown]), ties, tuple(invisible))
 
 
 def _ordered(causes: Sequence[Cause]) -> list[Cause]:
-    return sorted(causes, key=lambda one: (one.chance, one.rms))
+    return sorted(causes, key=lambda cause: (cause.chance, cause.rms))
 
 
 @dataclass(frozen=True)
@@ -154,8 +154,8 @@ class _Search:
         visible: dict[str, Array] = {}
         invisible: list[str] = []
         finite = np.isfinite(self.difference)
-        for name, one in self.problem.hypotheses.items():
-            if one.fitted:
+        for name, hypothesis in self.problem.hypotheses.items():
+            if hypothesis.fitted:
                 continue
             prediction = effect(self.problem, ((name, 1.0),))
             if not np.isfinite(prediction[finite]).all():
@@ -187,7 +187,7 @@ class _Search:
 
     def is_enough(self, causes: Sequence[Cause]) -> bool:
         """Whether the best cause leaves no more than the uncertainty."""
-        best = min((one.rms for one in causes if one.named), default=np.inf)
+        best = min((cause.rms for cause in causes if cause.named), default=np.inf)
         return best <= NOISE * self.uncertainty
 
     def fitted(self, changes: tuple[Change, ...], slopes: dict[str, Array], tried: int) -> list[Cause]:
@@ -214,10 +214,10 @@ class _Search:
             a += float(rest @ slope[finite] / (slope[finite] @ slope[finite]))
             if not 1e-6 < abs(a) <= np.log(MAX_FACTOR):
                 break
-            one = self.cause((*changes, (name, float(np.exp(a)))), kinds, fitted=1)
-            if not one.rms < best.rms:
+            cause = self.cause((*changes, (name, float(np.exp(a)))), kinds, fitted=1)
+            if not cause.rms < best.rms:
                 break
-            best, prediction = one, one.prediction
+            best, prediction = cause, cause.prediction
             slope = (prediction - begin) / a
         return best
 
@@ -242,12 +242,12 @@ class _Search:
                 out.append(self._refined(((name, 1.0),), factor, slopes[factor], len(mixed)))
         return out
 
-    def is_tied(self, one: Cause, best: Cause) -> bool:
+    def is_tied(self, cause: Cause, best: Cause) -> bool:
         """Whether the numbers do not tell a cause from the best: log likelihoods, with the best one's remainder as noise."""
         finite = np.isfinite(self.difference)
         variance = max(self.uncertainty, best.rms) ** 2
-        squares = [finite.sum() * cause.rms**2 for cause in (one, best)]
-        same_kind = len(one.changes) <= len(best.changes) and (_is_fixed(one) or not _is_fixed(best))
+        squares = [finite.sum() * cause.rms**2 for cause in (cause, best)]
+        same_kind = len(cause.changes) <= len(best.changes) and (_is_fixed(cause) or not _is_fixed(best))
         return same_kind and (squares[0] - squares[1]) / (2.0 * variance) < LIKELIHOOD
 
 

@@ -50,7 +50,9 @@ class Problem:
     speeds: tuple[float, ...]
     labels: tuple[Label, ...]
     by_shape: bool = False
-    hypotheses: dict[str, Hypothesis] = field(default_factory=lambda: {one.name: one for one in ALL})
+    hypotheses: dict[str, Hypothesis] = field(
+        default_factory=lambda: {hypothesis.name: hypothesis for hypothesis in ALL}
+    )
 
     @property
     def count(self) -> int:
@@ -118,7 +120,7 @@ def solved(problem: Problem, changes: tuple[Change, ...], elements: int) -> list
 @lru_cache(maxsize=64)
 def names(problem: Problem) -> list[tuple[str, ...]]:
     """Names of the solver's modes at each speed, as ``flapwise 1``; empty at a speed without an answer."""
-    return [_named(one, problem.blade) if one else () for one in solved(problem, (), FINE)]
+    return [_named(spectrum, problem.blade) if spectrum else () for spectrum in solved(problem, (), FINE)]
 
 
 def _named(modes: Modes, blade: Blade) -> tuple[str, ...]:
@@ -152,8 +154,8 @@ def _partners(problem: Problem, row: int, own: Modes) -> list[int | None]:
     base = solved(problem, (), FINE)[row]
     if base is None:
         return [None] * len(problem.labels)
-    known = _places(problem.labels, names(problem)[row])
-    places = [place for place in known if place is not None and place < len(base.frequencies)]
+    placed = _places(problem.labels, names(problem)[row])
+    places = [place for place in placed if place is not None and place < len(base.frequencies)]
     ours, theirs = of_blade(base, weights(problem.blade)), of_blade(own)
     partner = dict(zip(places, pair(ours, theirs, places, LEAST_MAC), strict=True))
-    return [partner[place].mode if place in partner else None for place in known]
+    return [partner[place].mode if place in partner else None for place in placed]

@@ -81,21 +81,21 @@ def indication(modes: Sequence[ModeSplit], fastest: float, uncertainty: float) -
         fastest: highest speed, rad/s.
         uncertainty: relative; smaller differences are not mentioned.
     """
-    sloped = [one for one in modes if np.isfinite([one.slope, one.rest, one.rest_reference]).all()]
-    rising = [one for one in sloped if one.slope_reference * fastest**2 > 0.02 * one.rest_reference**2]
-    if rising and all(one.slope < -FALLS * one.slope_reference for one in rising):
+    sloped = [mode for mode in modes if np.isfinite([mode.slope, mode.rest, mode.rest_reference]).all()]
+    rising = [mode for mode in sloped if mode.slope_reference * fastest**2 > 0.02 * mode.rest_reference**2]
+    if rising and all(mode.slope < -FALLS * mode.slope_reference for mode in rising):
         return "frequencies fall with speed where the solver's rise: geometric stiffness is missing or reversed"
-    if rising and all(abs(one.slope) <= FALLS * one.slope_reference for one in rising):
+    if rising and all(abs(mode.slope) <= FALLS * mode.slope_reference for mode in rising):
         return "frequencies do not move with speed: geometric stiffness or the rotation is missing"
     if not sloped:
         return ""
-    at_rest = np.array([one.rest**2 - one.rest_reference**2 for one in sloped])
-    turning = np.array([(one.slope - one.slope_reference) * fastest**2 for one in sloped])
-    whole = np.array([one.rest_reference**2 + max(one.slope_reference, 0.0) * fastest**2 for one in sloped])
+    at_rest = np.array([mode.rest**2 - mode.rest_reference**2 for mode in sloped])
+    turning = np.array([(mode.slope - mode.slope_reference) * fastest**2 for mode in sloped])
+    whole = np.array([mode.rest_reference**2 + max(mode.slope_reference, 0.0) * fastest**2 for mode in sloped])
     squares = [float(((part / whole) ** 2).sum()) for part in (at_rest, turning)]
     if max(np.abs(at_rest / whole).max(), np.abs(turning / whole).max()) <= 2.0 * uncertainty:
         return ""
-    offsets = [one.offset for one in sloped]
+    offsets = [mode.offset for mode in sloped]
     whole_change = 0.5 * float(np.abs((at_rest + turning) / whole).max())
     if squares[0] >= DOMINANT * sum(squares):
         return "the difference is an offset at rest: stiffness or mass"

@@ -35,8 +35,8 @@ def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
 
     def make(right: Any) -> Any:
         def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
-            found = right(name, blade, runs, *how)
-            return [answer if isinstance(answer, Failure) else alter(answer) for answer in found]
+            answers = right(name, blade, runs, *how)
+            return [answer if isinstance(answer, Failure) else alter(answer) for answer in answers]
 
         return wrong
 
@@ -48,10 +48,10 @@ def asked(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
 
     def make(right: Any) -> Any:
         def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
-            found = right(name, blade, [alter(run) for run in runs], *how)
+            answers = right(name, blade, [alter(run) for run in runs], *how)
             return [
                 answer if isinstance(answer, Failure) else replace(answer, omega=run[0], elements=run[1])
-                for run, answer in zip(runs, found, strict=True)
+                for run, answer in zip(runs, answers, strict=True)
             ]
 
         return wrong

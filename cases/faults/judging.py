@@ -95,8 +95,8 @@ def _excuses(right: Any) -> Any:
 def _column(name: str, factor: float) -> Any:
     def make(right: Any) -> Any:
         def wrong(*args: Any) -> Any:
-            found = right(*args)
-            return {**found, name: factor * found[name]}
+            columns = right(*args)
+            return {**columns, name: factor * columns[name]}
 
         return wrong
 
@@ -105,16 +105,16 @@ def _column(name: str, factor: float) -> Any:
 
 def _exchanged(right: Any) -> Any:
     def wrong(*args: Any) -> Any:
-        found = right(*args)
-        return {**found, "EI_flap [N m^2]": found["EI_edge [N m^2]"], "EI_edge [N m^2]": found["EI_flap [N m^2]"]}
+        columns = right(*args)
+        return {**columns, "EI_flap [N m^2]": columns["EI_edge [N m^2]"], "EI_edge [N m^2]": columns["EI_flap [N m^2]"]}
 
     return wrong
 
 
 def _backwards(right: Any) -> Any:
     def wrong(*args: Any) -> Any:
-        found = right(*args)
-        return {name: column if name == "fraction [-]" else column[::-1] for name, column in found.items()}
+        columns = right(*args)
+        return {name: column if name == "fraction [-]" else column[::-1] for name, column in columns.items()}
 
     return wrong
 

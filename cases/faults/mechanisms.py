@@ -124,13 +124,13 @@ def _mixed(modes: MechanismModes) -> MechanismModes:
 
 FAULTS = (
     Fault("mechanism: no damper", "solver", "the damper on a joint is dropped", "damping ratio 0.14",
-          _about(lambda found: replace(found, C=0.5 * (found.C - found.C.T))), HINGED),
+          _about(lambda linear: replace(linear, C=0.5 * (linear.C - linear.C.T))), HINGED),
     Fault("mechanism: gyroscopic sign", "solver", "gyroscopic terms have the other sign", "no frequency; no partner",
-          _about(lambda found: replace(found, C=found.C.T)), SPINNING),
+          _about(lambda linear: replace(linear, C=linear.C.T)), SPINNING),
     Fault("loop: mass", "solver", "the mass on the loop is 0.2 % too small", "+0.1 %",
-          _about(lambda found: replace(found, M=0.998 * found.M)), LINKED),
+          _about(lambda linear: replace(linear, M=0.998 * linear.M)), LINKED),
     Fault("loop: coupling", "solver", "the stiffness by which a loop couples two coordinates is dropped", "percents",
-          _about(lambda found: replace(found, K=np.diag(np.diag(found.K)))), LINKED),
+          _about(lambda linear: replace(linear, K=np.diag(np.diag(linear.K)))), LINKED),
     Fault("mechanism: damping lost", "adapter", "only the moduli of the eigenvalues are returned", "damping ratio 0.14",
           ((mechanism, "answers", _answered(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
     Fault("mechanism: sixth digit", "adapter", "six digits of a code with the same equations", "1e-6",

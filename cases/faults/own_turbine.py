@@ -85,8 +85,8 @@ def _weighing(subject: TurbineSubject) -> Callable[[], list[str]]:
         rows = turbine_weights.of_solver(subject.name, subject.turbine, weighed)
         return [f"{subject.name}, Southwell's own model, {row.part}: fail" for row in rows if row.verdict == "fail"]
 
-    known = failing()
-    return lambda: [line for line in failing() if line not in known]
+    before = failing()
+    return lambda: [line for line in failing() if line not in before]
 
 
 def _remembered() -> Seam:
@@ -143,14 +143,14 @@ def reading(subject: TurbineSubject) -> list[Control]:
     fastest = max(subject.points)
     out = own_reading.of_file(subject.name, fastest, file)
     right = read_again(subject.name, subject.turbine, path)
-    known = {row.part for row in right if row.verdict != "pass"}
+    failing_before = {row.part for row in right if row.verdict != "pass"}
     for name, what, alter in READER:
         control = Control(name, "reader", what, "", subject.name, fastest, ())
         if absent := [row.reason for row in right if row.verdict == "not run"]:
             out.append(replace(control, needs=absent[0]))
             continue
         rows = read_again(subject.name, alter(subject.turbine), path)
-        parts = [row.part for row in rows if row.verdict == "fail" and row.part not in known]
+        parts = [row.part for row in rows if row.verdict == "fail" and row.part not in failing_before]
         detected = tuple(f"{subject.name}, second reading, {part}: fail" for part in parts)
         same = not detected and _alike(subject.turbine, alter(subject.turbine))
         effect = "changes no property of this turbine" if same else ""

@@ -118,20 +118,22 @@ def run(subject: BladeSubject) -> list[Control]:
         for fault in FAULTS
     ]
     try:
-        known = [_solved(subject, elements) for elements in MESHES]
+        solutions = [_solved(subject, elements) for elements in MESHES]
     except (*NO_STATE, ArithmeticError):
         return [replace(control, needs=NO_MESH) for control in controls]
-    values = _estimates(known)
-    right = _outside(subject, known, values)
+    values = _estimates(solutions)
+    right = _outside(subject, solutions, values)
     out = []
     for fault, control in zip(FAULTS, controls, strict=True):
         with seeded([fault.seam]):
-            altered = _estimates(known)
-        wrong = _outside(subject, known, altered)
-        found = {mode: change for mode, change in wrong.items() if mode not in right}
-        largest = max(found.values(), key=abs, default=None)
-        result = replace(control, detected_by=tuple(f"{mode}: fail" for mode in found), change=largest)
-        out.append(replace(result, without_effect="" if found else _exact(known) or _covered(subject, values, altered)))
+            altered = _estimates(solutions)
+        wrong = _outside(subject, solutions, altered)
+        failing = {mode: change for mode, change in wrong.items() if mode not in right}
+        largest = max(failing.values(), key=abs, default=None)
+        result = replace(control, detected_by=tuple(f"{mode}: fail" for mode in failing), change=largest)
+        out.append(
+            replace(result, without_effect="" if failing else _exact(solutions) or _covered(subject, values, altered))
+        )
     return out
 
 
@@ -147,17 +149,17 @@ def _solved(subject: BladeSubject, elements: tuple[int, ...]) -> _Known:
     return _Known(elements, answers, Compared(finest, tuple(range(count))), factor, unsure, refined)
 
 
-def _estimates(known: Sequence[_Known]) -> list[list[Estimate | None]]:
+def _estimates(solutions: Sequence[_Known]) -> list[list[Estimate | None]]:
     """The estimate of each mode from each set of meshes."""
-    return [[mode.estimate for mode in follow(of.answers, of.compared, ORDER)] for of in known]
+    return [[mode.estimate for mode in follow(of.answers, of.compared, ORDER)] for of in solutions]
 
 
 def _outside(
-    subject: BladeSubject, known: Sequence[_Known], estimates: Sequence[Sequence[Estimate | None]]
+    subject: BladeSubject, solutions: Sequence[_Known], estimates: Sequence[Sequence[Estimate | None]]
 ) -> dict[str, float]:
     """Modes whose estimate does not cover the refined frequency, with the relative difference."""
     out = {}
-    for of, modes in zip(known, estimates, strict=True):
+    for of, modes in zip(solutions, estimates, strict=True):
         for k, estimate in enumerate(modes):
             if estimate is None or estimate.uncertainty is None:
                 continue
@@ -169,12 +171,13 @@ def _outside(
     return out
 
 
-def _exact(known: Sequence[_Known]) -> str:
+def _exact(solutions: Sequence[_Known]) -> str:
     """Why no fault can be seen: no mesh has an error above the uncertainty of the refined frequencies; else empty."""
     errors = [
-        np.abs(of.answers[-1].frequencies[: len(of.factor)] * of.factor / of.refined.frequencies - 1.0) for of in known
+        np.abs(of.answers[-1].frequencies[: len(of.factor)] * of.factor / of.refined.frequencies - 1.0)
+        for of in solutions
     ]
-    if all((error <= of.refined.uncertainty + of.unsure).all() for error, of in zip(errors, known, strict=True)):
+    if all((error <= of.refined.uncertainty + of.unsure).all() for error, of in zip(errors, solutions, strict=True)):
         return f"the meshes are right to {unsigned(max(float(error.max()) for error in errors))}"
     return ""
 

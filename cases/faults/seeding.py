@@ -184,7 +184,7 @@ def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
     if fault.blinds:
         return _blinding(fault, by_name(fault.blinds))
     assert trial
-    if absent := [one.asked for one in descriptions(trial) if not one.version]:
+    if absent := [description.asked for description in descriptions(trial) if not description.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(trial)
     try:
@@ -198,16 +198,16 @@ def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
 def _blinding(fault: Fault, other: Fault) -> Control:
     """Result for a fault in judging: another fault is no longer detected, or correct cells are bad."""
     assert other.trial
-    if absent := [one.asked for one in descriptions(other.trial) if not one.version]:
+    if absent := [description.asked for description in descriptions(other.trial) if not description.version]:
         return replace(_control(fault, ()), needs=", ".join(absent))
     right = faultless(other.trial)
     with seeded(fault.seams):
         before = cells(other.trial)
         with seeded(other.seams):
             after = cells(other.trial)
-    found = _judged(other, before, after).detected_by
+    detected = _judged(other, before, after).detected_by
     bad = _judged(fault, right, before).detected_by
-    return _control(fault, bad if found else (*bad, f"negative control not detected: {other.name}"))
+    return _control(fault, bad if detected else (*bad, f"negative control not detected: {other.name}"))
 
 
 def _judged(fault: Fault, right: Sequence[Cell], wrong: Sequence[Cell]) -> Control:

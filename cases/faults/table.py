@@ -40,7 +40,7 @@ def run(names: Sequence[str], reuse: bool = False) -> list[Control]:
     """
 
     def fault(name: str) -> Fault:
-        one = BY_NAME[name]
-        return replace(one, trial=replace(one.trial, reuse=reuse)) if one.trial else one
+        fault = BY_NAME[name]
+        return replace(fault, trial=replace(fault.trial, reuse=reuse)) if fault.trial else fault
 
     return [execute(fault(name), fault) for name in names]

@@ -28,13 +28,13 @@ class NodeTriplet:
 def triplets(each: AzimuthSet) -> tuple[NodeTriplet, ...]:
     """All triplets of translations and rotations."""
     rate_of = dict(each.pairs)
-    found: dict[tuple[int, int, str], dict[int, int]] = {}
+    indices: dict[tuple[int, int, str], dict[int, int]] = {}
     for i, state in enumerate(each.states):
         if state.module == "BD" and state.blade and not state.rate and i in rate_of and (at := state.direction):
-            found.setdefault((state.blade, at[2], at[0]), {})[at[1]] = i
+            indices.setdefault((state.blade, at[2], at[0]), {})[at[1]] = i
     return tuple(
         NodeTriplet(blade, node, what, tuple(axes[k] for k in range(3)), tuple(rate_of[axes[k]] for k in range(3)))
-        for (blade, node, what), axes in found.items()
+        for (blade, node, what), axes in indices.items()
         if len(axes) == 3
     )
 

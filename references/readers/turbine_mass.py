@@ -79,11 +79,11 @@ def weigh(path: Path, blade: Mounted, tip: Array) -> Weighed:
     except Exception as error:  # of a foreign parser, whatever it raises
         raise NotReadError(" ".join(f"{type(error).__name__}: {error}".split())[:300]) from error
     rotor = _rotor(masses["HubMass"], masses["HubCM"], masses["HubIner"])
-    one = Moments(*moments(blade, tip))
+    of_blade = Moments(*moments(blade, tip))
     for k in range(count):
         turn = 2.0 * pi * k / count
         axes = np.array([[cos(turn), -sin(turn), 0.0], [sin(turn), cos(turn), 0.0], [0.0, 0.0, 1.0]])
-        rotor += one.moved(axes, np.zeros(3))
+        rotor += of_blade.moved(axes, np.zeros(3))
     up = np.array([at[-1], 0.0, 0.0])
     axis = np.array([sin(tilt), 0.0, cos(tilt)])
     axes = np.column_stack([[cos(tilt), 0.0, -sin(tilt)], [0.0, 1.0, 0.0], axis])

@@ -95,11 +95,11 @@ def _at(field: Field, eta: Array) -> Array:
     return np.interp(eta, grid, values)
 
 
-def _material(found: Field) -> tuple[float, float, float]:
+def _material(material: Field) -> tuple[float, float, float]:
     """E and G, Pa, and density, kg/m³, of an isotropic material."""
-    E, rho = found.get("E").number(), found.get("rho").number()
-    nu, shear = found.find("nu"), found.find("G")
+    E, rho = material.get("E").number(), material.get("rho").number()
+    nu, shear = material.find("nu"), material.find("G")
     G = shear.number() if shear else E / (2.0 * (1.0 + (nu.number() if nu else 0.3)))
     if min(E, G, rho) <= 0:
-        raise CaseError(f"{found.at}: E, G and rho must be positive")
+        raise CaseError(f"{material.at}: E, G and rho must be positive")
     return E, G, rho

@@ -36,17 +36,17 @@ def unexplained(azimuths: Array, matrices: Array) -> Array:
     return matrices - np.array([fit.at(float(psi)) for psi in azimuths])
 
 
-def effects(each: AzimuthSet, found: Spectrum, parts: Array) -> Array:
+def effects(each: AzimuthSet, spectrum: Spectrum, parts: Array) -> Array:
     """Relative changes of the eigenvalues by each azimuth's part (mode, azimuth), to first and second order.
 
     Changes that the rounding of one file may cause are 0.
     """
-    values, adjoints, shapes = found.vectors
+    values, adjoints, shapes = spectrum.vectors
     second = second_order(parts, each.omega, (-2, -1, 1, 2), values, adjoints, shapes) / np.abs(values)
     weight = np.linalg.norm(parts, axis=(1, 2))
     share = weight / max(float(weight.max()), 1e-300)
     out = []
-    for mode, estimate in zip(found.modes, second, strict=True):
+    for mode, estimate in zip(spectrum.modes, second, strict=True):
         if mode.structural > 0.5 and np.isfinite(mode.uncertainty):
             change = np.maximum(np.abs(parts @ mode.shape @ mode.adjoint) / abs(mode.eigenvalue), estimate * share)
             rounding = mode.relative_uncertainty * np.sqrt(len(parts))
@@ -54,16 +54,16 @@ def effects(each: AzimuthSet, found: Spectrum, parts: Array) -> Array:
     return np.array(out).reshape(-1, len(parts))
 
 
-def agreement(each: AzimuthSet, A: Array, found: Spectrum) -> Iterator[Finding]:
+def agreement(each: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator[Finding]:
     """Azimuths that disagree in the fixed frame: blades exchanged, one inertia changed, or the block that differs most."""
-    if len(each.files) < 2 or not found.modes:
+    if len(each.files) < 2 or not spectrum.modes:
         return
-    parts = unexplained(each.azimuths, found.matrices)
+    parts = unexplained(each.azimuths, spectrum.matrices)
     parts[np.abs(parts) < ROUNDING_FACTOR * _noise(each)] = 0.0
-    effect = effects(each, found, parts)
+    effect = effects(each, spectrum, parts)
     if not effect.size or effect.max() < MAX_EFFECT:
         return
-    size = float(np.linalg.norm(unexplained(each.azimuths, found.matrices)))
+    size = float(np.linalg.norm(unexplained(each.azimuths, spectrum.matrices)))
     exchanged = float(np.linalg.norm(_exchanged(each, A))) if each.blades == 3 else np.inf
     if size > EXPLAINS * exchanged:
         yield Finding(
@@ -75,7 +75,7 @@ def agreement(each: AzimuthSet, A: Array, found: Spectrum) -> Iterator[Finding]:
             size / max(exchanged, 1e-300),
         )
         return
-    drift = _inertia(each, found.matrices)
+    drift = _inertia(each, spectrum.matrices)
     if drift:
         label, ratio, names = drift
         yield Finding(

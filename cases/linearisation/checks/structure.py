@@ -80,12 +80,12 @@ def columns(each: AzimuthSet) -> Iterator[Finding]:
         )
 
 
-def generator(each: AzimuthSet, found: Spectrum) -> Iterator[Finding]:
+def generator(each: AzimuthSet, spectrum: Spectrum) -> Iterator[Finding]:
     """A free generator has no stiffness: turning the rotor costs nothing."""
     for q, v in each.pairs:
         if each.states[q].family != "generator" or not each.A[:, v].any():
             continue
-        stiffness = -float(found.matrices.mean(axis=0)[v, q])
+        stiffness = -float(spectrum.matrices.mean(axis=0)[v, q])
         if stiffness > MAX_GENERATOR_STIFFNESS:
             yield Finding(
                 "generator locked",
@@ -95,7 +95,7 @@ def generator(each: AzimuthSet, found: Spectrum) -> Iterator[Finding]:
                 "linearise with a free generator, or without its degree of freedom",
                 stiffness,
             )
-        drift = float(found.real.real.max(initial=0.0))
+        drift = float(spectrum.real.real.max(initial=0.0))
         if drift > MIN_DRIFT * abs(each.omega) and stiffness <= MAX_GENERATOR_STIFFNESS:
             yield Finding(
                 "generator not at zero",
@@ -107,13 +107,13 @@ def generator(each: AzimuthSet, found: Spectrum) -> Iterator[Finding]:
             )
 
 
-def units(each: AzimuthSet, found: Spectrum) -> Iterator[Finding]:
+def units(each: AzimuthSet, spectrum: Spectrum) -> Iterator[Finding]:
     """Masses of tower and blades, from the ratio of the two couplings between them.
 
     With A = −M⁻¹K and a nearly diagonal K, the ratio of masses is (A_tt / A_bb) (A_tb / A_bt); a unit of the tower's
     states that is larger by a factor s multiplies it by 1/s².
     """
-    mean = found.matrices.mean(axis=0)
+    mean = spectrum.matrices.mean(axis=0)
     index = {(s.family, s.rate): i for i, s in enumerate(each.states) if s.blade is None and s.module == "ED"}
     groups = {each.states[g.members[0]].family: g for g in each.groups if not g.rate and g.derivative}
     for tower, blade, components in (
