@@ -103,17 +103,20 @@ class Weighing:
             if not isinstance(model, Fingerprint) and len(models) == 2:
                 break  # a finer mesh is not within the limits: the verdict is that of these two
             if not isinstance(model, Fingerprint):
-                reason = model.reason if isinstance(model, Failure) else "the code reports no mass"
-                kind = "not applicable" if model is None or model.kind == "unsupported" else "not run"
-                row = PropertyCheck(
-                    self.case, code.name, version, "fingerprint", "", None, None, "", None, weighing.TARGET, kind
-                )
-                return [_because(row, reason)]
+                return [unweighed(self.case, code.name, version, model, weighing.TARGET)]
             models = [*models[-1:], model]
             if weighing.enough(self.blade, self.stations, models, code.effects.rotary_inertia):
                 break
         weights = weighing.weights(self.blade, self.stations, models, code.effects.rotary_inertia)
         return _rows(self.case, code.name, version, weights, SHARED if code.shares == "discretisation" else "")
+
+
+def unweighed(case: str, code: str, version: str, model: Fingerprint | Failure | None, target: float) -> PropertyCheck:
+    """The row of a code that reports no model to weigh, with the reason."""
+    failed = isinstance(model, Failure) and model.kind != "unsupported"
+    kind = "not run" if failed else "not applicable"
+    row = PropertyCheck(case, code, version, "fingerprint", "", None, None, "", None, target, kind)
+    return _because(row, model.reason if isinstance(model, Failure) else "the code reports no mass")
 
 
 def weighings(
