@@ -8,7 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ...core.rotor.periodic import PeriodicError
-from ...core.turbine.turbine import FINER, Resolution, Turbine, machine
+from ...core.turbine.machine import FINER, Resolution, machine
+from ...core.turbine.turbine import Turbine
 from ...core.turbine.turbine_modes import TurbineModes, tracked, turbine_modes
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from .required import TEN_PERCENT, RequiredMargin

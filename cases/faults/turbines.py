@@ -9,7 +9,7 @@ import numpy as np
 from ...core.modes import STATIONS
 from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
-from ...core.turbine import turbine as assembly
+from ...core.turbine import rotor as equations
 from ...core.turbine.turbine import Turbine, shaft_pose
 from ...references.protocol.process import Failure
 from ...references.protocol.turbines import TurbineModes
@@ -48,7 +48,7 @@ def _assembled(alter: Callable[[Turbine], Turbine]) -> tuple[Seam, ...]:
 
 
 def _projected(alter: Callable[[Any], Any]) -> tuple[Seam, ...]:
-    return ((assembly, "in_ground_frame", alter),)
+    return ((equations, "in_ground_frame", alter),)
 
 
 def _frozen(right: Any) -> Any:

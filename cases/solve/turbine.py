@@ -9,8 +9,9 @@ import numpy as np
 
 from ...core.effects import ALL_EFFECTS
 from ...core.rotor.periodic import PeriodicError
+from ...core.turbine.machine import FINER, Machine, Resolution, machine
 from ...core.turbine.stations import COLUMNS, weights
-from ...core.turbine.turbine import FINER, Machine, Resolution, Turbine, machine
+from ...core.turbine.turbine import Turbine
 from ...core.turbine.turbine_modes import TurbineModes, turbine_modes
 from ...references.protocol import turbines
 from ...references.protocol.process import Failure, Limits

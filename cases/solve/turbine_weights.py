@@ -14,18 +14,19 @@ from ...core.space import spatial as sp
 from ...core.space.inertia import transformed
 from ...core.spectrum.mesh_solver import balance
 from ...core.turbine import component
-from ...core.turbine import turbine as assembly
-from ...core.turbine.turbine import Turbine, machine
+from ...core.turbine import rotor as equations
+from ...core.turbine.machine import machine
+from ...core.turbine.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.fingerprint import Fingerprint, of_turbine
-from ...references.protocol.process import Failure, Limits
+from ...references.protocol.process import Limits
 from ...references.protocol.worker import fingerprints
 from ...references.readers import Stations
 from ...references.readers.quadrature import Mounted
 from ...references.readers.stations import NotReadError
 from ...references.readers.turbine_mass import Weighed, weigh
 from ..judge.results import PropertyCheck
-from .properties import CORE
+from .properties import CORE, unweighed
 
 TARGET = 1e-5
 """Largest difference: rigid bodies and integrals of sections are the same in every discretisation."""
@@ -45,7 +46,7 @@ def of_core(turbine: Turbine) -> Fingerprint:
     made = machine(turbine)
     state = balance(made.blade_mesh, 0.0, np.zeros(3), ALL_EFFECTS)
     blade = component.reduced_component(made.blade_mesh, state, made.resolution.blade_modes)
-    rotor = assembly.rotor(made.turbine, blade, 0.0, 0.0)[0]
+    rotor = equations.rotor(made.turbine, blade, 0.0, 0.0)[0]
     return of_turbine(_body(made.tower_mesh), float(rotor[-1, -1]), made.resolution.blade_elements)
 
 
@@ -111,13 +112,7 @@ class TurbineWeighing:
         (model,) = fingerprints(code.asked, self.turbine, code.levels[:1], self.limits, release)
         if isinstance(model, Fingerprint) and model.inertia is not None:
             return rows(self.case, code.name, release, model, self.weighed)
-        reason = model.reason if isinstance(model, Failure) else "the code reports no mass"
-        kind = "not run" if isinstance(model, Failure) and model.kind != "unsupported" else "not applicable"
-        return [
-            PropertyCheck(
-                *(self.case, code.name, release, "fingerprint", "", None, None, "", None, TARGET), kind, reason
-            )
-        ]
+        return [unweighed(self.case, code.name, release, model, TARGET)]
 
 
 def weighings(

@@ -17,8 +17,10 @@ from ..space import spatial as sp
 from ..tree.links import Links, twists
 from ..tree.mode_shapes import mode_shapes
 from ..tree.pencil import Shape
+from .assembly import Assembled
 from .component import Component
-from .turbine import RZ, Assembled, Turbine, turned_axes
+from .rotor import RZ, turned_axes
+from .turbine import Turbine
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

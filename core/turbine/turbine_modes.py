@@ -20,9 +20,10 @@ from ..rotor.whirl import whirl
 from ..spectrum import eigen
 from ..threads import one_thread
 from . import stations
+from .assembly import Assembled, assemble
+from .machine import Machine
 from .motion import Motion, displacements, flattened
 from .tower import NAMES, ordinal
-from .turbine import Assembled, Machine, assemble
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]

@@ -7,9 +7,10 @@ import pytest
 
 from southwell import multibody as mb
 from southwell.core.blade import AXIAL, TORSION, Blade
+from southwell.core.turbine.machine import machine
 from southwell.core.turbine.stations import weights
 from southwell.core.turbine.tower import Support
-from southwell.core.turbine.turbine import Drivetrain, Turbine, machine
+from southwell.core.turbine.turbine import Drivetrain, Turbine
 from southwell.core.turbine.turbine_modes import TurbineModes, turbine_modes
 from southwell.references.exudyn.turbine import CODE as EXUDYN
 from southwell.references.joint_chains.pinocchio_turbine import CODE as PINOCCHIO

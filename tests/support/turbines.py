@@ -9,7 +9,8 @@ from southwell.core.element.mesh import Mesh
 from southwell.core.space import spatial as sp
 from southwell.core.space.inertia import transformed
 from southwell.core.tree.as_mechanism import single_element
-from southwell.core.turbine.turbine import Drivetrain, Resolution, Turbine, shaft_pose
+from southwell.core.turbine.machine import Resolution
+from southwell.core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 
 SMALL = Resolution(tower_elements=2, blade_elements=2, tower_modes=6, blade_modes=8)
 

@@ -2,7 +2,7 @@
 
 A node of blade k is at p = B (r e_x + Σ φ_i q_i − ½ qᵀ S q e_x) in the axes of its hub, which turn with Ω; B is precone, φ and
 S are those of ``nodes``. With a small twist ξ of the hub, its acceleration, and the forces m (a − g) on q and ξ, are linearised
-exactly. The tower is core's, restricted to the assumed shapes of the deck. Blades are summed as in ``core.turbine.turbine``.
+exactly. The tower is core's, restricted to the assumed shapes of the deck. Blades are summed as in ``core.turbine.rotor``.
 """
 
 from dataclasses import dataclass
@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.space import spatial as sp
-from ....core.turbine.turbine import RZ, turned_axes
+from ....core.turbine.rotor import RZ, turned_axes
 from ..sets import AzimuthSet
 from .deck import Deck
 from .nodes import Nodes, of_blade

@@ -16,8 +16,8 @@ from ....core.element.mesh import Mesh
 from ....core.sampling import mass_at
 from ....core.space import spatial as sp
 from ....core.tree.links import Links, twists
+from ....core.turbine.assembly import Assembled
 from ....core.turbine.assumed import Field
-from ....core.turbine.turbine import Assembled
 from ..sets import AzimuthSet
 from ..states import State
 from .deck import Deck

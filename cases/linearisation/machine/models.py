@@ -18,8 +18,9 @@ from ....core.spectrum import eigen
 from ....core.spectrum.mesh_solver import balance
 from ....core.threads import one_thread
 from ....core.turbine import component
+from ....core.turbine.assembly import assemble
 from ....core.turbine.assumed import Assumed, Field, restricted_motions
-from ....core.turbine.turbine import Machine, Resolution, assemble, machine
+from ....core.turbine.machine import Machine, Resolution, machine
 from ...input.errors import CaseError
 from ..modes import MIN_OSCILLATION
 from ..multiblade import fixed_frame

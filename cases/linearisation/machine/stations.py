@@ -5,8 +5,8 @@ from numpy.typing import NDArray
 
 from ....core.modes import STATIONS
 from ....core.space import spatial as sp
+from ....core.turbine.rotor import RZ, turned_axes
 from ....core.turbine.stations import positions
-from ....core.turbine.turbine import RZ, turned_axes
 from ..modes import Mode
 from ..multiblade import states_of_components
 from ..sets import AzimuthSet

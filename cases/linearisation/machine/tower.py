@@ -9,7 +9,7 @@ from ....core.blade import Blade
 from ....core.sampling import mass_at, stiffness_at
 from ....core.turbine.assumed import Curvatures, Field, bending, restricted_motions
 from ....core.turbine.component import with_strains
-from ....core.turbine.turbine import Machine
+from ....core.turbine.machine import Machine
 from .deck import Deck, Shape
 
 Array = NDArray[np.float64]

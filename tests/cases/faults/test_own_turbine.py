@@ -11,7 +11,8 @@ from southwell.cases.plan.request import Request
 from southwell.cases.plan.subjects import subjects
 from southwell.cases.plan.turbine import TurbineSubject
 from southwell.cases.solve import turbine as solving
-from southwell.core.turbine.turbine import Resolution, Turbine, machine
+from southwell.core.turbine.machine import Resolution, machine
+from southwell.core.turbine.turbine import Turbine
 from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.references.protocol.process import Limits
 from southwell.references.protocol.turbines import TurbineModes

@@ -18,7 +18,8 @@ from southwell.cases.plan.turbine import TurbineSubject
 from southwell.cases.run.executors import Serial
 from southwell.cases.solve import turbine as solving
 from southwell.cases.verify import matrix
-from southwell.core.turbine.turbine import Resolution, Turbine, machine
+from southwell.core.turbine.machine import Resolution, machine
+from southwell.core.turbine.turbine import Turbine
 from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.references.protocol.description import describe
 from southwell.references.protocol.process import Limits

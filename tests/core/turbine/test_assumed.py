@@ -12,7 +12,7 @@ from southwell.core.spectrum import eigen
 from southwell.core.spectrum.mesh_solver import balance
 from southwell.core.turbine import component
 from southwell.core.turbine.assumed import Assumed, Curvatures, Field, bending, restricted_motions
-from southwell.core.turbine.turbine import machine
+from southwell.core.turbine.machine import machine
 from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.tests.support.turbines import small
 

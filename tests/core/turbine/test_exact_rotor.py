@@ -17,7 +17,9 @@ from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import discretize
 from southwell.core.spectrum.eigen import damped
 from southwell.core.spectrum.mesh_solver import balance
-from southwell.core.turbine import component, turbine
+from southwell.core.turbine import component
+from southwell.core.turbine.rotor import rotor
+from southwell.core.turbine.turbine import Turbine
 
 OMEGA, RADIUS, LENGTH, EI, MASS = 6.0, 0.8, 10.0, 4e4, 5.0
 TILT, TILT_INERTIA, SLIDE, SLIDE_MASS = 2e4, 200.0, 8e3, 60.0
@@ -66,8 +68,8 @@ def frequencies(elements: int) -> np.ndarray:
     mesh = discretize(blade, elements)
     reduced = component.reduced_component(mesh, balance(mesh, OMEGA, np.zeros(3), ALL_EFFECTS), 20)
     hub = np.diag([0.0, 0.0, SLIDE_MASS, TILT_INERTIA, TILT_INERTIA, 0.0])
-    machine = turbine.Turbine("rotor", blade, blade, 3, np.zeros((6, 6)), hub, np.eye(4))
-    M, C, K = turbine.rotor(machine, reduced, OMEGA, 0.0)
+    machine = Turbine("rotor", blade, blade, 3, np.zeros((6, 6)), hub, np.eye(4))
+    M, C, K = rotor(machine, reduced, OMEGA, 0.0)
     n = 3 * reduced.size
     K[n + 2, n + 2] += SLIDE
     K[n + 3, n + 3] += TILT

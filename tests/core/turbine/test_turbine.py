@@ -15,9 +15,10 @@ from southwell.core.rotor.orbit import orbit_of
 from southwell.core.space import spatial as sp
 from southwell.core.space.inertia import transformed
 from southwell.core.spectrum import eigen
-from southwell.core.turbine import turbine as tb
+from southwell.core.turbine.assembly import assemble
+from southwell.core.turbine.machine import Resolution, machine, rigid_rotor
 from southwell.core.turbine.tower import Support, Tower, ordinal, tower_modes
-from southwell.core.turbine.turbine import Drivetrain, Resolution, assemble, machine
+from southwell.core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from southwell.core.turbine.turbine_modes import linked, turbine_modes
 from southwell.tests.support.turbines import SMALL, as_mechanism, rigid_nacelle_and_rotor, small
 
@@ -27,7 +28,7 @@ ONE = Resolution(tower_elements=1, blade_elements=1, tower_modes=6, blade_modes=
 """One element each."""
 
 
-def general(turbine: tb.Turbine, omega: float, psi: float = 0.3) -> np.ndarray:
+def general(turbine: Turbine, omega: float, psi: float = 0.3) -> np.ndarray:
     """Frequencies of the mechanism: the angle of the blades' coordinates is taken out by multi-blade coordinates."""
 
     orbit = orbit_of(as_mechanism(turbine, ONE, omega), "spin.rz")
@@ -107,7 +108,7 @@ def test_stiff_blades_leave_the_tower_with_a_rigid_rotor() -> None:
     turbine = replace(small(), gravity=9.81)
     stiff = replace(turbine, blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness))
     made = machine(stiff, replace(SMALL, tower_elements=6))
-    rotor = tb.rigid_rotor(stiff, made.blade_mesh)
+    rotor = rigid_rotor(stiff, made.blade_mesh)
     tower = replace(turbine.tower, tip_mass=rigid_nacelle_and_rotor(stiff, rotor))
     exact = solve.modes(tower, 0.0, elements=6, count=4, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
     np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=3e-6)
@@ -125,7 +126,7 @@ def test_a_turbine_on_springs_with_a_stiff_rotor_is_a_tower_on_springs() -> None
         support=Support(K, (wire,), soil),
     )
     made = machine(stiff, replace(SMALL, tower_elements=12))
-    tip = rigid_nacelle_and_rotor(stiff, tb.rigid_rotor(stiff, made.blade_mesh))
+    tip = rigid_nacelle_and_rotor(stiff, rigid_rotor(stiff, made.blade_mesh))
     exact = tower_modes(Tower(replace(turbine.tower, tip_mass=tip), stiff.support, 9.81), 4).frequencies
     np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=1e-4)
     clamped = turbine_modes(machine(replace(stiff, support=Support()), SMALL), 0.0, 4).frequencies
@@ -146,7 +147,7 @@ def test_a_rigid_turbine_on_a_floater_is_a_body_with_a_gyroscope() -> None:
         support=Support(K, mass=floater),
     )
     made = machine(stiff, SMALL)
-    rotor = tb.rigid_rotor(stiff, made.blade_mesh)
+    rotor = rigid_rotor(stiff, made.blade_mesh)
     top = sp.pose(np.eye(3), np.array([turbine.tower.length, 0.0, 0.0]))
     M = tower_inertia(turbine) + transformed(rigid_nacelle_and_rotor(stiff, rotor), top) + floater
     speed = 10.0 * OMEGA
@@ -160,7 +161,7 @@ def test_a_rigid_turbine_on_a_floater_is_a_body_with_a_gyroscope() -> None:
     assert np.abs(still / exact - 1.0).max() > 5e-3
 
 
-def tower_inertia(turbine: tb.Turbine) -> np.ndarray:
+def tower_inertia(turbine: Turbine) -> np.ndarray:
     """(6, 6) of the uniform tower at its base: a rod along x, and the moments of its sections."""
     m, length = turbine.tower.mass[0], turbine.tower.length
     out = m * length
@@ -207,7 +208,7 @@ def test_default_resolution_is_converged() -> None:
 
 def test_an_upwind_rotor_tilts_upwards() -> None:
     """NREL 5 MW: the hub is 2.4 m above the tower's top and 5 m upwind; the rotor's axis points downwind and down."""
-    pose = tb.shaft_pose(1.96256, -5.0191, np.radians(-5.0))
+    pose = shaft_pose(1.96256, -5.0191, np.radians(-5.0))
     np.testing.assert_allclose(pose[:3, 3], [2.4, 0.0, -5.0], atol=1e-4)
     assert pose[0, 2] < 0 < pose[2, 2]
     assert np.linalg.det(pose[:3, :3]) == pytest.approx(1.0)
@@ -223,13 +224,13 @@ def test_torsion_of_a_shaft_between_rotor_and_generator() -> None:
         tower=replace(turbine.tower, stiffness=1e6 * turbine.tower.stiffness),
     )
     made = machine(stiff, SMALL)
-    inertia = tb.rigid_rotor(stiff, made.blade_mesh)[5, 5]
+    inertia = rigid_rotor(stiff, made.blade_mesh)[5, 5]
     solution = turbine_modes(made, 0.0, 1)
     assert solution.names == ("drivetrain torsion",)
     assert solution.frequencies[0] == pytest.approx(np.sqrt(k * (1 / inertia + 1 / (ratio**2 * J))), rel=1e-4)
 
 
-def wrong_nacelle(turbine: tb.Turbine) -> tb.Turbine:
+def wrong_nacelle(turbine: Turbine) -> Turbine:
     """Moments about the tower's top taken for those about the mass centre."""
     inertia = turbine.nacelle.copy()
     arm = inertia[:3, 3:] / inertia[0, 0]
@@ -238,8 +239,8 @@ def wrong_nacelle(turbine: tb.Turbine) -> tb.Turbine:
 
 
 WRONG = {
-    "tilt": lambda t: replace(t, shaft=tb.shaft_pose(0.7, -1.5, 0.09)),
-    "overhang": lambda t: replace(t, shaft=tb.shaft_pose(0.7, 1.5, -0.09)),
+    "tilt": lambda t: replace(t, shaft=shaft_pose(0.7, -1.5, 0.09)),
+    "overhang": lambda t: replace(t, shaft=shaft_pose(0.7, 1.5, -0.09)),
     "precone": lambda t: replace(t, blade=replace(t.blade, precone=0.04)),
     "pitch": lambda t: replace(t, blade=replace(t.blade, pitch=-0.1)),
     "nacelle about the wrong point": wrong_nacelle,

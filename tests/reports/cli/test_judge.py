@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from southwell.cases.input.readers.openfast.turbine import read
-from southwell.core.turbine.turbine import machine
+from southwell.core.turbine.machine import machine
 from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.reports.cli.app import main
 from southwell.tests.support.elastodyn_decks import shaped

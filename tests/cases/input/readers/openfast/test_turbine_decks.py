@@ -14,7 +14,7 @@ from southwell.cases.input.readers.openfast import turbine
 from southwell.core import solve
 from southwell.core.blade import Blade, section_mass, section_stiffness
 from southwell.core.space.inertia import transformed
-from southwell.core.turbine.turbine import machine, rigid_rotor
+from southwell.core.turbine.machine import machine, rigid_rotor
 from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.tests.support.assumed_modes import blade_mass, frequencies
 from southwell.tests.support.turbine_decks import deck
