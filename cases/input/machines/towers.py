@@ -5,7 +5,9 @@ from pathlib import Path
 from ....core.turbine.tower import Tower
 from .. import files
 from ..errors import CaseError
-from ..readers import bmodes_tower, hawc2_htc, hawc2_tower, windio_tower
+from ..readers import bmodes_tower, windio_tower
+from ..readers.hawc2 import bodies
+from ..readers.hawc2 import tower as hawc2_tower
 from ..readers.source import Source
 from ..readers.text import load
 from . import turbine_toml
@@ -34,7 +36,7 @@ def read(path: Path) -> tuple[Tower, Source]:
         if suffix in (".yaml", ".yml"):
             return windio_tower.read(path)
         text = load(path)
-        if hawc2_htc.matches_format(text):
+        if bodies.matches_format(text):
             return hawc2_tower.read(path)
         if not bmodes_tower.matches_format(text):
             raise CaseError(

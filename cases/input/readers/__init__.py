@@ -83,7 +83,8 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
     """
     module = _BY_SUFFIX.get(path.suffix.lower())
     if module is None:
-        from . import bmodes, hawc2, other_files, text
+        from . import bmodes, other_files, text
+        from .hawc2 import blade as hawc2
         from .openfast import beamdyn, elastodyn, elastodyn_tower, fst
 
         lines = text.load(path)
@@ -95,8 +96,8 @@ def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:
             ("openfast.beamdyn", beamdyn.is_blade),
             ("openfast.beamdyn", beamdyn.is_main),
             ("bmodes", bmodes.matches_format),
-            ("hawc2", hawc2.is_st),
-            ("hawc2", hawc2.is_htc),
+            ("hawc2.blade", hawc2.is_st),
+            ("hawc2.blade", hawc2.is_htc),
         )
         module = next((name for name, sign in signs if sign(lines)), None)
         if module is None and (what := other_files.description(lines)):

@@ -11,7 +11,8 @@ import pytest
 
 from southwell.cases.input import blades, readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.readers import Mount, bmodes, hawc2, windio
+from southwell.cases.input.readers import Mount, bmodes, windio
+from southwell.cases.input.readers.hawc2 import blade as hawc2
 from southwell.cases.input.readers.openfast import beamdyn, elastodyn
 from southwell.cases.reading.comparison import compare
 from southwell.cases.reading.second import SecondReading, read_again

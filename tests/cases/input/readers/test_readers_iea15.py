@@ -17,7 +17,7 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import about_root
 from southwell.cases.input.readers import Mount, text
-from southwell.cases.input.readers.hawc2_htc import matches_format
+from southwell.cases.input.readers.hawc2.bodies import matches_format
 from southwell.core.blade import Blade
 from southwell.core.solve import modes
 from southwell.tests.support.blade_files import real

@@ -11,7 +11,8 @@ from scipy.integrate import trapezoid
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.properties import sections
-from southwell.cases.input.readers import Mount, bmodes, hawc2, southwell_toml
+from southwell.cases.input.readers import Mount, bmodes, southwell_toml
+from southwell.cases.input.readers.hawc2 import blade as hawc2
 from southwell.cases.input.readers.openfast import elastodyn
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import modes

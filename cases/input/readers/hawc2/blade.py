@@ -16,14 +16,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError
-from ..errors import CaseError
-from . import hawc2_htc
-from .hawc2_orientation import mounting
-from .matrices import HAWC2, about, bending, fault, in_axes, rotated, shearing
-from .openfast.elastodyn import complete
-from .source import Mount, Reading, Source
-from .text import ROUNDING, Table, Text, leading, load, table
+from .....core.blade import Blade, BladeError
+from ...errors import CaseError
+from ..matrices import HAWC2, about, bending, fault, in_axes, rotated, shearing
+from ..openfast.elastodyn import complete
+from ..source import Mount, Reading, Source
+from ..text import ROUNDING, Table, Text, leading, load, table
+from . import bodies
+from .orientation import mounting
 
 Array = NDArray[np.float64]
 
@@ -46,7 +46,7 @@ def is_st(text: Text) -> bool:
 
 def is_htc(text: Text) -> bool:
     """Whether these are lines of an htc file."""
-    return hawc2_htc.matches_format(text)
+    return bodies.matches_format(text)
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
@@ -66,10 +66,10 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     elif mount.main is not None:
         htc = load(mount.main)
     if htc is not None:
-        commands = hawc2_htc.commands(htc)
-        body = hawc2_htc.blade_body(htc, commands)
+        commands = bodies.commands(htc)
+        body = bodies.blade_body(htc, commands)
         stated = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
-        file, stated_subset = hawc2_htc.properties(htc, body)
+        file, stated_subset = bodies.properties(htc, body)
         subset = subset or stated_subset
         text = text or load(file)
     assert text is not None
@@ -85,7 +85,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     stiffness, mass = _stiffness(columns), _mass(columns)
     if htc is not None and body is not None:
-        stations, curve, twist, at, (bent, swung) = hawc2_htc.half_chords(body, r)
+        stations, curve, twist, at, (bent, swung) = bodies.half_chords(body, r)
         stiffness, mass = _between(r, stiffness, at), _between(r, mass, at)
         notes.append(
             f"stations: {len(r)} of the structural file and {len(at) - len(r)} more of c2_def; between them curve and twist "
@@ -117,7 +117,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    unused_values = hawc2_htc.left(body) if body is not None else ()
+    unused_values = bodies.left(body) if body is not None else ()
     return Reading(
         blade,
         Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), unused_values),

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import numpy as np
 
-from ....core.blade import Blade, BladeError, coupled
-from ....core.turbine.tower import Tower
-from ..errors import CaseError
-from . import hawc2, hawc2_htc
-from .hawc2_htc import LENGTHS
-from .source import Source
-from .text import load, number
+from .....core.blade import Blade, BladeError, coupled
+from .....core.turbine.tower import Tower
+from ...errors import CaseError
+from ..source import Source
+from ..text import load, number
+from . import blade, bodies
+from .bodies import LENGTHS
 
 NAME = "HAWC2 tower"
 AXES = "HAWC2: y downwind, z down; here x = −(its z), z = its y"
@@ -28,10 +28,10 @@ def read(path: Path) -> tuple[Tower, Source]:
         CaseError: naming the file and line at fault.
     """
     htc = load(path)
-    body = hawc2_htc.body_named(htc, hawc2_htc.commands(htc), "tower")
-    file, subset = hawc2_htc.properties(htc, body)
+    body = bodies.body_named(htc, bodies.commands(htc), "tower")
+    file, subset = bodies.properties(htc, body)
     text = load(file)
-    r, stiffness, mass = hawc2.sections(text, subset)
+    r, stiffness, mass = blade.sections(text, subset)
     points = np.array([[number(word) for word in c.words[2:6]] for c in body if c.words[0] == "sec"], float)
     at = next(c.at for c in body if c.words[0] == "sec")
     if points.ndim != 2 or points.shape[1] != 4 or not np.isfinite(points).all():
@@ -51,4 +51,4 @@ def read(path: Path) -> tuple[Tower, Source]:
         "clamped at the base, without weight",
         "nacelle, shaft and rotor are other bodies of the htc, which are not read",
     )
-    return Tower(beam), Source(NAME, (path, file), AXES, notes, hawc2_htc.left(body))
+    return Tower(beam), Source(NAME, (path, file), AXES, notes, bodies.left(body))

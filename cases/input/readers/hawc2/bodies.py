@@ -15,9 +15,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import Akima1DInterpolator, CubicSpline
 
-from ..errors import CaseError
-from .source import Unused, unused
-from .text import ROUNDING, Text, believable, load, number
+from ...errors import CaseError
+from ..source import Unused, unused
+from ..text import ROUNDING, Text, believable, load, number
 
 Array = NDArray[np.float64]
 

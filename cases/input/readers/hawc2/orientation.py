@@ -12,10 +12,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.space.spatial import rotation
-from .hawc2_htc import Body, Command
-from .source import Mount
-from .text import number
+from .....core.space.spatial import rotation
+from ..source import Mount
+from ..text import number
+from .bodies import Body, Command
 
 Array = NDArray[np.float64]
 
