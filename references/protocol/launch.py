@@ -14,7 +14,6 @@ import subprocess
 import sys
 import threading
 import time
-from collections import deque
 from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -97,7 +96,7 @@ class Child:
 
     def kill(self) -> None:
         """Kill the supervisor and all its descendants; before it is forked, the process that would fork it."""
-        for pid in (*descendants(self.pid), self.pid) if self.pid else (self._forker.process.pid,):
+        for pid in (*portable.descendants(self.pid), self.pid) if self.pid else (self._forker.process.pid,):
             with suppress(ProcessLookupError, PermissionError):
                 os.kill(pid, signal.SIGKILL)
 
@@ -167,15 +166,3 @@ def _forker(surroundings: tuple[dict[str, str], str]) -> _Forker:
             start_new_session=True,
         )
     return _Forker(process, own_end, surroundings)
-
-
-def descendants(pid: int) -> list[int]:
-    """All descendants of a process; empty if the kernel does not list them."""
-    pids, todo = [], deque([pid])
-    while todo:
-        parent = todo.popleft()
-        with suppress(OSError):
-            text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
-            todo += (new := [int(child) for child in text.split()])
-            pids += new
-    return pids

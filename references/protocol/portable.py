@@ -10,6 +10,7 @@ import signal
 import socket
 import subprocess
 import sys
+from collections import deque
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -77,6 +78,18 @@ def end_with_input() -> None:
         os._exit(1)
 
     Thread(target=watch, daemon=True).start()
+
+
+def descendants(pid: int) -> list[int]:
+    """All descendants of a process; empty if the kernel does not list them."""
+    pids, todo = [], deque([pid])
+    while todo:
+        parent = todo.popleft()
+        with suppress(OSError):
+            text = Path(f"/proc/{parent}/task/{parent}/children").read_text(encoding="ascii")
+            todo += (new := [int(child) for child in text.split()])
+            pids += new
+    return pids
 
 
 def resident(pids: list[int]) -> int:
@@ -170,8 +183,6 @@ def spawned(
 
 
 def _end(child: subprocess.Popen[bytes]) -> None:
-    from .launch import descendants
-
     started = descendants(child.pid)
     child.kill()
     for pid in started:

@@ -98,7 +98,7 @@ def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tupl
         request,
         expected + 1,  # the first line says that it is ready
         time_limit=lambda lines: limits.seconds if lines else START,
-        stop_reason=lambda pid: _too_large(portable.resident([pid, *launch.descendants(pid)]), limits),
+        stop_reason=lambda pid: _too_large(portable.resident([pid, *portable.descendants(pid)]), limits),
         longest_line=LONGEST_LINE,
         kept=STDERR_BYTES,
         poll_interval=POLL_INTERVAL,
@@ -197,7 +197,7 @@ def _end(child: launch.Child) -> None:
 
 def _resident(pid: int | None) -> int:
     """Resident memory of all descendants of a process, if it has started, bytes."""
-    return portable.resident(launch.descendants(pid) if pid else [])
+    return portable.resident(portable.descendants(pid) if pid else [])
 
 
 def _crash(status: int, stderr: str) -> Failure:

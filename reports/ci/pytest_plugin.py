@@ -12,14 +12,12 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from .pytest_choice import FIXTURE, MARK, PROPERTY, Chosen, tests_of
+
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
-    from ...cases.input.schema import Case, Variant
     from ...cases.judge.results import Cell, Level, Setting
-    from ...cases.verify.user_solver import UserSolver
-
-MARK, FIXTURE, PROPERTY = "southwell", "southwell_cell", "southwell"
 
 HELP = (
     f"{MARK}(solve, name, lacks, levels, order, unsupported, cases, target, known): test a solver on every blade, speed "
@@ -49,22 +47,6 @@ def pytest_configure(config: pytest.Config) -> None:
         config.pluginmanager.register(gathers, "southwell-report")
 
 
-@dataclass(frozen=True)
-class Chosen:
-    """One test: a solver, a blade, a speed (rad/s) and the number of a compared mode, from 1."""
-
-    solver: "UserSolver"
-    case: "Case"
-    variant: "Variant"
-    omega: float
-    mode: int
-
-    @property
-    def name(self) -> str:
-        """Identifier in the test's name, such as ``park-cantilever-10rad_s-mode1``."""
-        return f"{self.variant.name}-{self.omega:.6g}rad_s-mode{self.mode}"
-
-
 def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     """Generate a test for every blade, speed and mode."""
     if FIXTURE not in metafunc.fixturenames:
@@ -72,47 +54,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     mark = metafunc.definition.get_closest_marker(MARK)
     if mark is None:
         raise pytest.UsageError(f"{metafunc.definition.nodeid}: uses {FIXTURE} but has no mark {MARK}(solve=…)")
-    chosen = _chosen(metafunc.config, mark, metafunc.definition.nodeid)
+    chosen = tests_of(mark, metafunc.config, metafunc.definition.nodeid)
     metafunc.parametrize(FIXTURE, chosen, ids=[c.name for c in chosen], indirect=True)
-
-
-def _chosen(config: pytest.Config, mark: pytest.Mark, where: str) -> list[Chosen]:
-    from ...cases.input.errors import CaseError
-    from ...cases.input.library import select
-    from ...cases.plan.blade import blades
-    from ...cases.plan.names import unique
-    from ...cases.verify.user_solver import UserSolver
-
-    target = config.getoption("--southwell-target")
-    try:
-        solver = UserSolver(*mark.args, **{**mark.kwargs, **({"target": target} if target else {})})
-        solver.effects  # noqa: B018  (checks the names of effects)
-    except TypeError as error:
-        raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
-    names = config.getoption("--southwell-cases")
-    try:
-        some = [select(n) for n in names.split(",")] if names else None
-        cases = [select(n) for n in solver.cases] or some or _all()
-        unique(blades(*cases), [], [])
-        only = {v.name for c in some or cases for v in c.variants}
-    except CaseError as error:
-        raise pytest.UsageError(f"{where}: {error}") from error
-    return [
-        Chosen(solver, case, variant, omega, k)
-        for case in cases
-        for variant in case.variants
-        if variant.name in only
-        for omega in variant.speeds.tolist()
-        for k in range(1, case.text.compare.modes + 1)
-    ]
-
-
-def _all() -> "list[Case]":
-    """Every case whose files are present."""
-    from ...cases.input import library
-
-    present, _ = library.load_all()
-    return list(present.values())
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
-from .pytest_plugin import FIXTURE, PROPERTY, Chosen
+from .pytest_choice import FIXTURE, PROPERTY, Chosen
 
 if TYPE_CHECKING:
     from ...cases.judge.results import Planned, Run
