@@ -5,6 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from ...core.blade import Blade
+from ..input.readers import BladeFile
 from ..judge.results import Cell, Diagnosed
 from .diagnose import cause_lines, diagnose, mode_lines
 
@@ -24,8 +25,11 @@ def _frequencies(cells: Sequence[Cell]) -> list[Cell]:
     return [cell for cell in some if cell.mode and cell.value]
 
 
-def diagnosed(blade: Blade, cells: Sequence[Cell]) -> Diagnosed:
-    """The diagnosis of one column of one blade, from its cells; the modes were paired by shape, or by the file's names."""
+def diagnosed(blade: Blade, cells: Sequence[Cell], deck: BladeFile | None = None) -> Diagnosed:
+    """The diagnosis of one column of one blade, from its cells; the modes were paired by shape, or by the file's names.
+
+    ``deck`` is the blade's file, if it has one.
+    """
     answered = _frequencies(cells)
     speeds = sorted({cell.omega for cell in answered})
     names = sorted({cell.name for cell in answered})
@@ -34,7 +38,7 @@ def diagnosed(blade: Blade, cells: Sequence[Cell]) -> Diagnosed:
         given[speeds.index(cell.omega), names.index(cell.name)] = cell.value
     uncertainties = [cell.uncertainty for cell in answered if cell.uncertainty is not None]
     uncertainty = float(np.clip(np.median(uncertainties), LEAST, MOST)) if uncertainties else LEAST
-    diagnosis = diagnose(blade, speeds, given, names, by_shape=True, uncertainty=uncertainty)
+    diagnosis = diagnose(blade, speeds, given, names, by_shape=True, uncertainty=uncertainty, deck=deck)
     return Diagnosed(
         case=cells[0].case,
         code=cells[0].code,

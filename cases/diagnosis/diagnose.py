@@ -6,12 +6,15 @@ if one does not suffice, in pairs. A cause is named only if it explains more tha
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from ...core.blade import Blade
-from . import own_elements, spectra
+from ..input import readers
+from ..input.readers import BladeFile, Mount
+from . import decks, spectra
 from .arithmetic import arithmetic, difference
 from .hypotheses import ALL
 from .ranking import Cause, rank
@@ -96,7 +99,7 @@ def diagnose(
     *,
     by_shape: bool = False,
     uncertainty: float = UNCERTAINTY,
-    nodes: Sequence[float] | None = None,
+    deck: str | Path | BladeFile | None = None,
 ) -> Diagnosis:
     """Explain the differences of a program's frequencies from the solver's.
 
@@ -107,11 +110,12 @@ def diagnose(
         modes: (M,) numbers among all modes of the blade, from 1, or names as ``flapwise 1``; by default 1 … M.
         by_shape: whether labels are of the solver's modes, to which the program's were paired by shape.
         uncertainty: relative uncertainty of the program's numbers; smaller differences are not explained.
-        nodes: arc lengths of the program's nodes from root to tip, m, if they are known, as from c2_def of an htc file: its
-            elements may have constant or linear properties.
+        deck: file that the blade was read from, if it was: how HAWC2 and ElastoDyn describe a blade of it is then among the
+            hypotheses.
 
     Raises:
-        ValueError: arrays of other shapes, nothing to compare, or nodes that do not ascend.
+        ValueError: arrays of other shapes, or nothing to compare.
+        CaseError: the deck cannot be read.
     """
     omega, given = np.asarray(speeds, float), np.atleast_2d(np.asarray(frequencies, float))
     labels = tuple(modes) if modes is not None else tuple(range(1, given.shape[-1] + 1))
@@ -120,9 +124,16 @@ def diagnose(
     if not np.isfinite(given).any():
         raise ValueError("frequencies: none is finite")
     rows = _rows(omega, given)
-    kinds = ALL if nodes is None else (*ALL, *own_elements.hypotheses(nodes))
+    kinds = ALL if deck is None else (*decks.hypotheses(_file(deck), blade), *ALL)
     problem = Problem(blade, tuple(omega[rows].tolist()), labels, by_shape, {kind.name: kind for kind in kinds})
     return explain(problem, given[rows], uncertainty)
+
+
+def _file(deck: str | Path | BladeFile) -> BladeFile:
+    if isinstance(deck, BladeFile):
+        return deck
+    reading = readers.reading(Path(deck))
+    return BladeFile(Path(deck), reading.blade, reading.source, Mount())
 
 
 def explain(problem: Problem, given: Array, uncertainty: float = UNCERTAINTY) -> Diagnosis:

@@ -21,6 +21,8 @@ from ...core.tree import pencil
 from ...core.tree.links import product
 from ...core.tree.mode_shapes import mode_shapes
 from ...core.tree.pencil import Shape, TreePencil
+from ...core.turbine.assumed import restricted_motions
+from .elastodyn_blade import AssumedShapes, OperatingPoint, blade_equations, field_of, nodes_of
 from .scaled_terms import softened, stiffened
 
 Array = NDArray[np.float64]
@@ -50,6 +52,9 @@ class Model:
         whole_tip: whether the lumped mass at the tip is that of a whole element instead of a half.
         elements: number of elements if a coarse mesh is the hypothesis; 0 otherwise.
         basis: number of the blade's own lowest modes at rest that span all motion; 0: not truncated.
+        two_node: whether elements have no inner coordinates: their shapes are those of static loads at their ends, which are
+            linear in torsion and cubic in bending.
+        assumed: ElastoDyn's shapes and number of nodes, if its equations are solved in place of the mesh's.
         slow: whether ω² = ω₀² + φ Ω² is extrapolated from a low speed (Southwell 1921).
     """
 
@@ -63,6 +68,8 @@ class Model:
     whole_tip: bool = False
     elements: int = 0
     basis: int = 0
+    two_node: bool = False
+    assumed: AssumedShapes | None = None
     slow: bool = False
 
 
@@ -84,8 +91,10 @@ def solve(model: Model, speeds: Sequence[float], count: int, elements: int = ELE
     with one_thread(), np.errstate(all="ignore"):
         if model.slow:
             return _extrapolated(mesh, model, turned, count)
-        if model.basis:
-            return _truncated(mesh, model, turned, count)
+        if model.assumed:
+            return _assumed(mesh, model, model.assumed, turned)
+        if model.basis or model.two_node:
+            return _restricted(mesh, model, turned, count)
         return list(_swept(mesh, model, turned, count))
 
 
@@ -113,24 +122,13 @@ def _modes(mesh: Mesh, shape: Shape, p: TreePencil, lowest: Eigen, omega: float)
     return Modes(omega, lowest.frequencies, shapes, mesh.elements)
 
 
-def _truncated(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> list[Modes | None]:
-    """Modes in the basis of the ``model.basis`` lowest modes at rest (Ritz), about the prestressed undeformed blade.
-
-    The coordinates are differences of twists along the blade, so that the basis includes the shortening of a bent blade.
-    """
+def _restricted(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> list[Modes | None]:
+    """Modes in a basis (Ritz): the lowest modes at rest, about the prestressed undeformed blade, or static shapes."""
     try:
-        rest = mesh_solver.solve(mesh, 0.0, Options(model.basis))
+        basis = _lowest(mesh, model.basis) if model.basis else _static(mesh)
     except NO_ANSWER:
         return [None] * len(speeds)
-    phase = np.exp(-1j * np.angle(rest.vectors[np.abs(rest.vectors).argmax(0), range(rest.vectors.shape[1])]))
-    basis = (rest.vectors * phase).real.T
-    basis = (
-        basis
-        / np.sqrt(np.einsum("mi,mi->m", basis, product(rest.state.pencil.M, 1.0, rest.state.pencil.links, basis)))[
-            :, None
-        ]
-    )
-    effects = replace(model.effects, prestretch=False)
+    effects = replace(model.effects, prestretch=False) if model.basis else model.effects
     out: list[Modes | None] = []
     for omega in speeds:
         try:
@@ -138,8 +136,53 @@ def _truncated(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) ->
             p = state.pencil
             M, C, K = (basis @ product(a, sign, p.links, basis).T for a, sign in ((p.M, 1.0), (p.C, -1.0), (p.K, 1.0)))
             M, C, K = 0.5 * (M + M.T), 0.5 * (C - C.T), 0.5 * (K + K.T)
-            small = gyroscopic(M, C, K, min(count, model.basis))
+            small = gyroscopic(M, C, K, min(count, len(basis)))
             out.append(_modes(mesh, state.shape, p, Eigen(small.frequencies, basis.T @ small.vectors), omega))
+        except NO_ANSWER:
+            out.append(None)
+    return out
+
+
+def _lowest(mesh: Mesh, count: int) -> Array:
+    """(count, n) the lowest modes at rest.
+
+    The coordinates are differences of twists along the blade, so that the basis includes the shortening of a bent blade.
+    """
+    rest = mesh_solver.solve(mesh, 0.0, Options(count))
+    phase = np.exp(-1j * np.angle(rest.vectors[np.abs(rest.vectors).argmax(0), range(rest.vectors.shape[1])]))
+    basis = (rest.vectors * phase).real.T
+    p = rest.state.pencil
+    return basis / np.sqrt(np.einsum("mi,mi->m", basis, product(p.M, 1.0, p.links, basis)))[:, None]
+
+
+def _static(mesh: Mesh) -> Array:
+    """(6 n, n d) for each element the six relative motions of its ends; inner coordinates have the least elastic energy."""
+    K = pencil.linearize(mesh, pencil.undeformed(mesh), 0.0, np.zeros(3), ALL_EFFECTS).K
+    n, d = len(K), K.shape[1] - 6
+    motions = np.tile(np.eye(6, d), (n, 1, 1))
+    motions[..., 6:] = -np.linalg.solve(K[:, 12:, 12:], K[:, 12:, 6:12]).swapaxes(1, 2)
+    basis = np.zeros((n, 6, n, d))
+    basis[np.arange(n), :, np.arange(n)] = motions
+    return basis.reshape(6 * n, n * d)
+
+
+def _assumed(mesh: Mesh, model: Model, assumed: AssumedShapes, speeds: Sequence[float]) -> list[Modes | None]:
+    """Modes by ElastoDyn's equations about the undeformed blade; all that the shapes have."""
+    shape = pencil.undeformed(mesh)
+    try:
+        basis = restricted_motions(model.blade, mesh, field_of(model.blade, assumed.shapes))
+        nodes = nodes_of(model.blade, assumed.shapes, assumed.nodes)
+        p = pencil.linearize(mesh, shape, 0.0, np.zeros(3), ALL_EFFECTS)
+    except NO_ANSWER:
+        return [None] * len(speeds)
+    r = len(assumed.shapes)
+    at = OperatingPoint(*np.zeros((3, r)))
+    out: list[Modes | None] = []
+    for omega in speeds:
+        try:
+            M, C, K = (part[:r, :r] for part in blade_equations(nodes, model.blade, omega, -model.gravity, at))
+            small = gyroscopic(M, C - nodes.damping, K, r)
+            out.append(_modes(mesh, shape, p, Eigen(small.frequencies, basis[:r].T @ small.vectors), omega))
         except NO_ANSWER:
             out.append(None)
     return out

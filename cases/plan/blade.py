@@ -10,6 +10,7 @@ from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
 from .. import data
+from ..input.readers import BladeFile
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, PropertyCheck, Setting
 from ..solve import error_budget, properties
@@ -70,6 +71,11 @@ class BladeSubject:
     def blade(self) -> Blade:
         """See ``Subject``."""
         return self.variant.blade
+
+    @property
+    def file(self) -> BladeFile | None:
+        """See ``Subject``."""
+        return self.variant.file
 
     def setting(self) -> Setting:
         """See ``Subject``."""

@@ -11,6 +11,7 @@ from typing import Any, Protocol
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
+from ..input.readers import BladeFile
 from ..judge.results import BudgetEntry, PropertyCheck, Setting
 from .column import Column
 from .user_results import UserResults
@@ -66,6 +67,11 @@ class Subject(Protocol):
         """The blade that codes are asked whether they accept; None if the subject is none."""
         ...
 
+    @property
+    def file(self) -> BladeFile | None:
+        """The file that its blade was read from; None if there is none, or if it was changed since."""
+        ...
+
     def setting(self) -> Setting:
         """Its description in a report."""
         ...
@@ -98,6 +104,7 @@ class NotABlade:
 
     tables: tuple[str, ...] = ()
     blade = None
+    file = None
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``."""

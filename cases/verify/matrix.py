@@ -162,7 +162,7 @@ def _diagnosed(
         for column in task.columns:
             cells, _ = rows[task.subject.name, column.name]
             if task.subject.blade is not None and diagnosis.is_due(cells, column.name in added):
-                futures.append(executor.submit(diagnosis.diagnosed, task.subject.blade, cells))
+                futures.append(executor.submit(diagnosis.diagnosed, task.subject.blade, cells, task.subject.file))
     return tuple(answer for answer in map(_answer, futures) if isinstance(answer, Diagnosed))
 
 

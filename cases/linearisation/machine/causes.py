@@ -12,7 +12,8 @@ from numpy.typing import NDArray
 
 from ....core.blade import Blade
 from ...diagnosis.ranking import CHANCE, UNEXPLAINED, UNFITTED, VISIBLE, chance
-from .deck import Deck, Shape
+from ...input.readers.openfast.mode_shapes import Shape
+from .deck import Deck
 
 Array = NDArray[np.float64]
 Alteration = Callable[[Deck, float], Deck]

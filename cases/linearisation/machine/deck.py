@@ -1,70 +1,18 @@
-"""A turbine's deck as its linearisation sees it: the machine, ElastoDyn's assumed mode shapes, nodes and damping.
-
-ElastoDyn's shapes are polynomials Σ c_k x^k, k = 2 … 6, of the distance from the root, 0 to 1. Source: J. Jonkman, M. Buhl,
-*FAST User's Guide*, NREL/EL-500-38230, 2005.
-"""
+"""A turbine's deck as its linearisation sees it: the machine, ElastoDyn's assumed mode shapes, nodes and damping."""
 
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ....core.turbine.turbine import Turbine
 from ...input import files
 from ...input.errors import CaseError
-from ...input.readers.openfast import elastodyn, elastodyn_tower, fst
+from ...input.readers.openfast import elastodyn, elastodyn_tower, fst, mode_shapes
 from ...input.readers.openfast import turbine as reader
+from ...input.readers.openfast.mode_shapes import Shape
 from ...input.readers.source import Mount
-from ...input.readers.text import Text, keys, load, number, value, whole
-
-Array = NDArray[np.float64]
-
-BLADE = {"flapwise 1": "BldFl1Sh", "flapwise 2": "BldFl2Sh", "edgewise 1": "BldEdgSh"}
-"""Motions of a blade and the names of their coefficients."""
-
-TOWER = {
-    "tower fore-aft 1": "TwFAM1Sh",
-    "tower fore-aft 2": "TwFAM2Sh",
-    "tower side-side 1": "TwSSM1Sh",
-    "tower side-side 2": "TwSSM2Sh",
-}
-"""Motions of the tower and the names of their coefficients."""
-
-_BLADE_DAMPING = {"flapwise 1": "BldFlDmp1", "flapwise 2": "BldFlDmp2", "edgewise 1": "BldEdDmp1"}
-_BLADE_TUNERS = {"flapwise 1": "FlStTunr1", "flapwise 2": "FlStTunr2"}
-_TOWER_DAMPING = {
-    "tower fore-aft 1": "TwrFADmp1",
-    "tower fore-aft 2": "TwrFADmp2",
-    "tower side-side 1": "TwrSSDmp1",
-    "tower side-side 2": "TwrSSDmp2",
-}
-_TOWER_TUNERS = {
-    "tower fore-aft 1": "FAStTunr1",
-    "tower fore-aft 2": "FAStTunr2",
-    "tower side-side 1": "SSStTunr1",
-    "tower side-side 2": "SSStTunr2",
-}
-
-
-@dataclass(frozen=True)
-class Shape:
-    """An assumed mode shape.
-
-    Attributes:
-        coefficients: (5,) of x² … x⁶.
-        damping: ratio of critical damping.
-        tuner: factor on the modal stiffness.
-    """
-
-    coefficients: Array
-    damping: float
-    tuner: float
-
-    def at(self, x: Array, derivative: int = 0) -> Array:
-        """The polynomial or its derivative at x, 0 to 1."""
-        powers = np.polynomial.Polynomial([0.0, 0.0, *self.coefficients])
-        return np.asarray(powers.deriv(derivative)(x) if derivative else powers(x))
+from ...input.readers.text import keys, load, value, whole
 
 
 @dataclass(frozen=True)
@@ -115,39 +63,14 @@ def read(path: Path) -> Deck:
         return Deck(
             made.turbine,
             float(np.radians(value(main, named, "ShftTilt"))),
-            _shapes(load(blade), BLADE, _BLADE_DAMPING, _BLADE_TUNERS) if compelast == "1" else {},
-            _shapes(load(elastodyn_tower.tower_file(main)), TOWER, _TOWER_DAMPING, _TOWER_TUNERS),
+            mode_shapes.of_blade(load(blade)) if compelast == "1" else {},
+            mode_shapes.of_tower(load(elastodyn_tower.tower_file(main))),
             whole(main, named, "BldNodes") if "bldnodes" in named else 0,
             whole(main, named, "TwrNodes") if "twrnodes" in named else 0,
             value(main, named, "DTTorSpr"),
-            _number(main, "DTTorDmp", 0.0),
+            mode_shapes.number_or(main, "DTTorDmp", 0.0),
             float(pitch),
         )
-
-
-def _shapes(text: Text, names: dict[str, str], damping: dict[str, str], tuners: dict[str, str]) -> dict[str, Shape]:
-    """The shapes in a blade or tower file; those that it does not have are left out."""
-    named = keys(text)
-    out: dict[str, Shape] = {}
-    for motion, name in names.items():
-        numbered = [f"{name}{k}" for k in range(2, 7)]
-        if not all(each.lower() in named for each in numbered):
-            continue
-        coefficients = np.array([value(text, named, each) for each in numbered])
-        if abs(coefficients.sum()) < 1e-6:
-            raise CaseError(f"{text.path}: {name}: the coefficients sum to 0, but a shape is 1 at its end: correct one")
-        out[motion] = Shape(
-            coefficients,
-            0.01 * _number(text, damping[motion], 0.0),
-            _number(text, tuners[motion], 1.0) if motion in tuners else 1.0,
-        )
-    return out
-
-
-def _number(text: Text, name: str, otherwise: float) -> float:
-    entry = keys(text).get(name.lower())
-    out = number(entry[1]) if entry else None
-    return out if out is not None and np.isfinite(out) else otherwise
 
 
 def for_states(deck: Deck, families: set[str]) -> Turbine:

@@ -1,8 +1,7 @@
 """The structural equations of a turbine in ElastoDyn's coordinates, at an azimuth and an operating point, without aerodynamics.
 
-A node of blade k is at p = B (r e_x + Σ φ_i q_i − ½ qᵀ S q e_x) in the axes of its hub, which turn with Ω; B is precone, φ and
-S are those of ``nodes``. With a small twist ξ of the hub, its acceleration, and the forces m (a − g) on q and ξ, are linearised
-exactly. The tower is core's, restricted to the assumed shapes of the deck. Blades are summed as in ``core.turbine.rotor``.
+The equations of a blade and a small twist of the hub are those of ``cases.diagnosis.elastodyn_blade``. The tower is core's,
+restricted to the assumed shapes of the deck. Blades are summed as in ``core.turbine.rotor``.
 """
 
 from dataclasses import dataclass
@@ -12,22 +11,13 @@ from numpy.typing import NDArray
 
 from ....core.space import spatial as sp
 from ....core.turbine.rotor import RZ, turned_axes
+from ...diagnosis.elastodyn_blade import Nodes, OperatingPoint, blade_equations, nodes_of
 from ..sets import AzimuthSet
 from .deck import Deck
-from .nodes import Nodes, of_blade
 from .tower import Tower
 
 Array = NDArray[np.float64]
 Matrices = tuple[Array, Array, Array]
-
-
-@dataclass(frozen=True)
-class Blade:
-    """Operating point of a blade: q, its first and second derivative, each (r,)."""
-
-    q: Array
-    rate: Array
-    acceleration: Array
 
 
 @dataclass(frozen=True)
@@ -72,7 +62,7 @@ def structure(deck: Deck, tower: Tower, each: AzimuthSet) -> Structure:
     places += [at[name, blade] for blade in range(1, each.blades + 1) for name in motions]
     return Structure(
         deck,
-        of_blade(deck.turbine.blade, shapes, deck.blade_nodes),
+        nodes_of(deck.turbine.blade, shapes, deck.blade_nodes),
         tower,
         np.array(places, dtype=np.intp),
         np.array([rate_of[k] for k in places], dtype=np.intp),
@@ -81,7 +71,7 @@ def structure(deck: Deck, tower: Tower, each: AzimuthSet) -> Structure:
     )
 
 
-def equations(model: Structure, psi: float, omega: float, gravity: float, at: tuple[Blade, ...]) -> Matrices:
+def equations(model: Structure, psi: float, omega: float, gravity: float, at: tuple[OperatingPoint, ...]) -> Matrices:
     """M, C, K over the coordinates at the azimuth ψ, rad, of blade 1, the speed, rad/s, and the blades' operating points."""
     deck, turbine = model.deck, model.deck.turbine
     t, r = len(model.families), len(model.nodes.stiffness)
@@ -122,7 +112,7 @@ def _hub(model: Structure) -> Array:
     return np.array(columns).reshape(-1, 6).T
 
 
-def _rotor(model: Structure, psi: float, omega: float, weight: Array, at: tuple[Blade, ...]) -> Matrices:
+def _rotor(model: Structure, psi: float, omega: float, weight: Array, at: tuple[OperatingPoint, ...]) -> Matrices:
     """M, C, K over the blades' coordinates and the hub's twist ξ_H; ``weight``: −g in the axes of the shaft."""
     r = len(model.nodes.stiffness)
     size = model.blades * r + 6
@@ -130,7 +120,7 @@ def _rotor(model: Structure, psi: float, omega: float, weight: Array, at: tuple[
     for k, point in enumerate(at):
         angle = psi + 2.0 * np.pi * k / max(model.blades, 1)
         turns = turned_axes(angle)
-        M, C, K = _blade(model, omega, turns[0][:3, :3] @ weight, point)
+        M, C, K = blade_equations(model.nodes, model.deck.turbine.blade, omega, turns[0][:3, :3] @ weight, point)
         P = []
         for order, turn in enumerate(turns):
             part = np.zeros((r + 6, size))
@@ -145,32 +135,3 @@ def _rotor(model: Structure, psi: float, omega: float, weight: Array, at: tuple[
     out[0][-6:, -6:] += hub
     out[1][-6:, -6:] += -sp.coadjoint(hub @ (omega * RZ))
     return out[0], out[1], out[2]
-
-
-def _blade(model: Structure, omega: float, weight: Array, at: Blade) -> Matrices:
-    """M, C, K (r + 6, r + 6) over q and ξ of a blade; ``weight``: −g in the axes of its hub."""
-    nodes, blade = model.nodes, model.deck.turbine.blade
-    r, m = len(nodes.stiffness), nodes.mass
-    c, s = np.cos(blade.precone), np.sin(blade.precone)
-    cone = np.array([[c, 0.0, -s], [0.0, 1.0, 0.0], [s, 0.0, c]])
-    spin = omega * sp.skew(np.array([0.0, 0.0, 1.0]))
-    bent = -np.einsum("a,ikn->naik", cone[:, 0], nodes.shortening)  # ∂²p/∂q²
-    straight = np.einsum("ab,inb->nai", cone, nodes.deflection)
-    D = straight + bent @ at.q
-    p = np.outer(blade.hub_radius + nodes.along, cone[:, 0]) + straight @ at.q + 0.5 * bent @ at.q @ at.q
-    moving, velocity = bent @ at.rate, D @ at.rate
-    acceleration = D @ at.acceleration + moving @ at.rate
-    load = p @ (spin @ spin).T + 2.0 * velocity @ spin.T + acceleration + weight  # force per mass
-    J, rate, second = (np.zeros((len(m), 3, r + 6)) for _ in range(3))
-    J[:, :, :r], J[:, :, r : r + 3], J[:, :, r + 3 :] = D, np.eye(3), -sp.skew(p)
-    rate[:, :, :r], rate[:, :, r + 3 :] = moving, -sp.skew(velocity)
-    second[:, :, :r], second[:, :, r + 3 :] = bent @ at.acceleration, sp.skew(load - acceleration)
-    weighted = m[:, None, None] * J
-    M = np.einsum("nai,nak->ik", weighted, J)
-    C = np.einsum("nai,nak->ik", weighted, 2.0 * (spin @ J + rate))
-    K = np.einsum("nai,nak->ik", weighted, spin @ spin @ J + 2.0 * spin @ rate + second)
-    K[:r, :r] += np.einsum("n,na,naik->ik", m, load, bent)
-    K[r + 3 :, :r] += np.einsum("n,nab,nbi->ai", m, -sp.skew(load), D)
-    K[:r, :r] += nodes.stiffness
-    C[:r, :r] += nodes.damping
-    return M, C, K

@@ -18,10 +18,10 @@ from ....core.space import spatial as sp
 from ....core.tree.links import Links, twists
 from ....core.turbine.assembly import Assembled
 from ....core.turbine.assumed import Field
+from ...diagnosis.elastodyn_blade import field_of
 from ..sets import AzimuthSet
 from ..states import State
 from .deck import Deck
-from .tower import field
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -82,13 +82,13 @@ def _add(deck: Deck, at: Points, state: State, component: int, row: Array) -> No
     t, b = len(at.tower), len(at.blade)
     if state.family in deck.tower_shapes:
         shape = {state.family: deck.tower_shapes[state.family]}
-        moved, _ = field(deck.turbine.tower, shape)(at.tower)
+        moved, _ = field_of(deck.turbine.tower, shape)(at.tower)
         row[: 2 * t] = (moved[0, :, 1:] * at.tower_weight[:, None]).ravel()
     elif state.family in ("generator", "drivetrain", "yaw"):
         row[2 * t] = _shaft_weight(deck) if state.family != "yaw" else 0.0
     elif state.blade and state.module == "ED" and state.family in deck.blade_shapes:
         shape = {state.family: deck.blade_shapes[state.family]}
-        moved, _ = field(deck.turbine.blade, shape)(at.blade)
+        moved, _ = field_of(deck.turbine.blade, shape)(at.blade)
         _blade(row, t, b, component, moved[0, :, 1:] * at.blade_weight[:, None])
     elif state.blade and (node := state.direction) and node[0] == "translational" and node[1] < 2:
         hats = lagrange(deck.turbine.blade.length, state.element_order, at.blade)

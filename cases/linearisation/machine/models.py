@@ -21,15 +21,17 @@ from ....core.turbine import component
 from ....core.turbine.assembly import assemble
 from ....core.turbine.assumed import Assumed, Field, restricted_motions
 from ....core.turbine.machine import Machine, Resolution, machine
+from ...diagnosis.elastodyn_blade import OperatingPoint, field_of
 from ...input.errors import CaseError
+from ...input.readers.openfast.mode_shapes import Shape
 from ..modes import MIN_OSCILLATION
 from ..multiblade import fixed_frame
 from ..sets import AzimuthSet
 from . import elastodyn, fields
-from .deck import Deck, Shape, for_states
-from .elastodyn import Blade, Matrices, Structure, equations
+from .deck import Deck, for_states
+from .elastodyn import Matrices, Structure, equations
 from .fields import Points, Shapes
-from .tower import field, tower
+from .tower import tower
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -123,14 +125,14 @@ class Models:
     def machine(self, restricted: bool) -> Machine:
         """The machine on the degrees of freedom of the set."""
         turbine = for_states(self.deck, set(self.free.hub))
-        flexible = None if self.free.tower and not restricted else field(turbine.tower, self.free.tower)
+        flexible = None if self.free.tower and not restricted else field_of(turbine.tower, self.free.tower)
         return machine(turbine, Resolution(), Assumed(flexible, self.blade_field() if restricted else None))
 
     def blade_field(self) -> Field | None:
         """ElastoDyn's shapes or BeamDyn's element; None if neither is known, or the element is curved."""
         blade = self.deck.turbine.blade
         if self.free.blade:
-            return field(blade, self.free.blade)
+            return field_of(blade, self.free.blade)
         return fields.element(blade.length, self.free.order) if self.free.order and straight(blade) else None
 
     def structure(self) -> Structure:
@@ -150,7 +152,7 @@ def matrices(model: Structure, each: AzimuthSet, gravity: bool, deflected: bool)
     factor = 1.0 if deflected else 0.0
     for k, file in enumerate(each.files):
         at = tuple(
-            Blade(
+            OperatingPoint(
                 factor * each.values[k][q],
                 factor * each.values[k][v],
                 factor * np.nan_to_num(each.accelerations[k][v]),

@@ -7,13 +7,13 @@ from ....core.modes import STATIONS
 from ....core.space import spatial as sp
 from ....core.turbine.rotor import RZ, turned_axes
 from ....core.turbine.stations import positions
+from ...diagnosis.elastodyn_blade import field_of
 from ..modes import Mode
 from ..multiblade import states_of_components
 from ..sets import AzimuthSet
 from ..states import State
 from .deck import Deck
 from .fields import element
-from .tower import field
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -57,7 +57,7 @@ def _bent(deck: Deck, state: State) -> Array:
     blade = deck.turbine.blade
     s = STATIONS * blade.length
     if state.module == "ED" and state.family in deck.blade_shapes:
-        return field(blade, {state.family: deck.blade_shapes[state.family]})(s)[0][0]
+        return field_of(blade, {state.family: deck.blade_shapes[state.family]})(s)[0][0]
     node, order = state.direction, state.element_order
     if node and order and node[0] == "translational" and 2 <= node[2] <= order + 1:
         # BeamDyn: x downwind, y to the trailing edge, z along the blade; here z, −y, x
@@ -75,6 +75,6 @@ def _carried(deck: Deck, state: State) -> tuple[Array, Array]:
     if state.family == "yaw":
         top[3] = 1.0
     elif state.family in deck.tower_shapes:
-        moved, turned = field(tower, {state.family: deck.tower_shapes[state.family]})(STATIONS * tower.length)
+        moved, turned = field_of(tower, {state.family: deck.tower_shapes[state.family]})(STATIONS * tower.length)
         none, top = moved[0], np.concatenate([moved[0, -1], turned[0, -1]])
     return none, sp.adjoint(sp.inverse(deck.turbine.shaft)) @ top

@@ -5,17 +5,15 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import Blade
 from ....core.sampling import mass_at, stiffness_at
-from ....core.turbine.assumed import Curvatures, Field, bending, restricted_motions
+from ....core.turbine.assumed import restricted_motions
 from ....core.turbine.component import with_strains
 from ....core.turbine.machine import Machine
-from .deck import Deck, Shape
+from ...diagnosis.elastodyn_blade import FINE, field_of
+from ...input.readers.openfast.mode_shapes import Shape
+from .deck import Deck
 
 Array = NDArray[np.float64]
-
-FINE = 2000
-"""Number of stations at which curvatures are given."""
 
 
 @dataclass(frozen=True)
@@ -35,17 +33,6 @@ class Tower:
     tip: Array
 
 
-def field(beam: Blade, shapes: dict[str, Shape]) -> Field:
-    """The field of shapes by motion: flapwise and fore-aft ones bend about one axis, edgewise and side-side the other."""
-    length = beam.length
-    x = np.linspace(0.0, 1.0, FINE + 1)
-    rows = np.array([shape.at(x, 2) / length**2 for shape in shapes.values()]).reshape(-1, len(x))
-    flap = np.array([name.startswith(("flapwise", "tower fore-aft")) for name in shapes], dtype=bool)[:, None]
-    # ElastoDyn's edgewise displacement is against y
-    sign = np.array([-1.0 if name.startswith("edgewise") else 1.0 for name in shapes])[:, None]
-    return bending(beam, Curvatures(x * length, np.where(flap, rows, 0.0), np.where(flap, 0.0, sign * rows)))
-
-
 def tower(deck: Deck, made: Machine | None, shapes: dict[str, Shape], yaw: bool) -> Tower:
     """The tower of a machine that is restricted to these shapes, in their own coordinates, as ElastoDyn's nodes integrate it.
 
@@ -55,7 +42,7 @@ def tower(deck: Deck, made: Machine | None, shapes: dict[str, Shape], yaw: bool)
     if made is None or not names:
         return Tower((), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((6, 0)))
     part, beam = made.tower, made.turbine.tower
-    rates = restricted_motions(beam, made.tower_mesh, field(beam, shapes))
+    rates = restricted_motions(beam, made.tower_mesh, field_of(beam, shapes))
     motions = with_strains(made.tower_mesh, made.tower_state, rates)
     U = np.linalg.lstsq(motions.T, part.vectors.T, rcond=None)[0]  # own coordinates are U times core's
     back = np.linalg.inv(U)

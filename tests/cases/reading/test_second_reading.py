@@ -129,13 +129,13 @@ def upper_triangle(patch: pytest.MonkeyPatch) -> None:
 
 
 def shear_about_the_mass_centre(patch: pytest.MonkeyPatch) -> None:
-    stiffness = hawc2._stiffness
+    stiffness = hawc2.stiffness_of
 
     def moved(p: Any) -> Any:
         columns = {**p.columns, "x_sh": p["x_cg"], "y_sh": p["y_cg"]}
         return stiffness(replace(p, columns=columns))
 
-    patch.setattr(hawc2, "_stiffness", moved)
+    patch.setattr(hawc2, "stiffness_of", moved)
 
 
 def second_blades_tip_mass(patch: pytest.MonkeyPatch) -> None:
@@ -204,7 +204,7 @@ MISTAKES: dict[str, tuple[str, Callable[[pytest.MonkeyPatch], None], set[str]]] 
     ),
     "HAWC2: sign of the product of inertia": (
         "hawc2-plain",
-        lambda patch: patch.setattr(hawc2, "_mass", lambda p, mass=hawc2._mass: product_sign(mass(p), 4, 5)),
+        lambda patch: patch.setattr(hawc2, "mass_of", lambda p, mass=hawc2.mass_of: product_sign(mass(p), 4, 5)),
         {"moments of inertia"},
     ),
     "HAWC2: sign of the principal axes' pitch": (

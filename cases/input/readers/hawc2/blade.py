@@ -12,6 +12,7 @@ the user's manual*, Risø-R-1597, ch. 6.
 
 import re
 from pathlib import Path
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -60,31 +61,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: naming the file and line at fault.
     """
     mount = mount or Mount()
-    text, htc, subset, body, stated = load(path), None, mount.subset, None, None
-    if is_htc(text):
-        htc, text = text, None
-    elif mount.main is not None:
-        htc = load(mount.main)
-    if htc is not None:
-        commands = bodies.commands(htc)
-        body = bodies.blade_body(htc, commands)
-        stated = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
-        file, stated_subset = bodies.properties(htc, body)
-        subset = subset or stated_subset
-        text = text or load(file)
-    assert text is not None
-    columns = _subset(text, subset)
+    columns, body, stated, files = contents(path, mount)
     r = columns["r"]
-    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
-    columns.need(
-        np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
-    )
-    rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
-    columns.need(rises, "r", r, "not beyond the station before it: sort them and drop duplicates")
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
-    stiffness, mass = _stiffness(columns), _mass(columns)
-    if htc is not None and body is not None:
+    stiffness, mass = stiffness_of(columns), mass_of(columns)
+    if body is not None:
         stations, curve, twist, at, (bent, swung) = bodies.half_chords(body, r)
         stiffness, mass = _between(r, stiffness, at), _between(r, mass, at)
         notes.append(
@@ -116,13 +98,52 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             pitch=mounted.pitch or 0.0,
         )
     except BladeError as error:
-        raise CaseError(f"{text.path}: {error}") from error
+        raise CaseError(f"{columns.text.path}: {error}") from error
     unused_values = bodies.left(body) if body is not None else ()
     return Reading(
         blade,
-        Source(NAME, (text.path, *([htc.path] if htc else [])), AXES, tuple(notes), unused_values),
+        Source(NAME, files, AXES, tuple(notes), unused_values),
         unstated=unstated,
     )
+
+
+class Contents(NamedTuple):
+    """The files of a blade: columns, the htc's body and what its orientation states (None without an htc), and paths."""
+
+    columns: Table
+    body: bodies.Body | None
+    stated: Mount | None
+    files: tuple[Path, ...]
+
+
+def contents(path: Path, mount: Mount) -> Contents:
+    """The contents of a structural file and its htc, of which ``path`` is one; arguments as for ``read``.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
+    text, htc, subset, body, stated = load(path), None, mount.subset, None, None
+    if is_htc(text):
+        htc, text = text, None
+    elif mount.main is not None:
+        htc = load(mount.main)
+    if htc is not None:
+        commands = bodies.commands(htc)
+        body = bodies.blade_body(htc, commands)
+        stated = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
+        file, stated_subset = bodies.properties(htc, body)
+        subset = subset or stated_subset
+        text = text or load(file)
+    assert text is not None
+    columns = _subset(text, subset)
+    r = columns["r"]
+    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
+    columns.need(
+        np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
+    )
+    rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
+    columns.need(rises, "r", r, "not beyond the station before it: sort them and drop duplicates")
+    return Contents(columns, body, stated, (text.path, *([htc.path] if htc else [])))
 
 
 def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, Array]:
@@ -132,7 +153,7 @@ def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, 
         CaseError: naming the file and line at fault.
     """
     columns = _subset(text, subset)
-    return columns["r"], _stiffness(columns), _mass(columns)
+    return columns["r"], stiffness_of(columns), mass_of(columns)
 
 
 def _between(r: Array, values: Array, at: Array) -> Array:
@@ -169,7 +190,8 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     return columns
 
 
-def _stiffness(p: Table) -> Array:
+def stiffness_of(p: Table) -> Array:
+    """Stiffness (n, 6, 6) about the half-chord line, in axes rotated by the twist."""
     angle = np.radians(p["pitch"])
     if "K11" in p.columns:
         full = np.zeros((len(angle), 6, 6))
@@ -185,7 +207,7 @@ def _stiffness(p: Table) -> Array:
     return about(bend, p["x_e"], p["y_e"]) + about(shear, p["x_sh"], p["y_sh"])
 
 
-def _mass(p: Table) -> Array:
+def mass_of(p: Table) -> Array:
     """Mass about the half-chord line: moments about the elastic centre are transferred to the mass centre first."""
     m, y, z = p["m"], p["x_cg"] - p["x_e"], p["y_cg"] - p["y_e"]
     rotary = np.zeros((len(m), 6, 6))

@@ -161,8 +161,8 @@ def left(body: Body) -> tuple[Unused, ...]:
     return tuple(out)
 
 
-def half_chords(body: Body, r: Array) -> HalfChords:
-    """The half-chord line at the stations ``r`` m of a structural file and at the sections of c2_def.
+def points(body: Body) -> Array:
+    """The sections of c2_def: x, y, z in m and twist in degrees (n, 4), from a root at z = 0.
 
     Raises:
         CaseError: naming the line of the section at fault.
@@ -185,12 +185,23 @@ def half_chords(body: Body, r: Array) -> HalfChords:
         raise CaseError(
             f"{sections[k].at}: sec: z = {c2[k, 2]:g} m: not beyond the one before: sort them and drop duplicates"
         )
+    return c2
+
+
+def half_chords(body: Body, r: Array) -> HalfChords:
+    """The half-chord line at the stations ``r`` m of a structural file and at the sections of c2_def.
+
+    Raises:
+        CaseError: naming the line of the section at fault.
+    """
+    c2 = points(body)
     spline = Akima1DInterpolator(c2[:, 2], c2)
     z = np.unique(np.concatenate([np.linspace(0, c2[-1, 2], FINE), c2[:, 2]]))
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(spline(z)[:, :3], axis=0), axis=1))])
     if abs(r[-1] - arc[-1]) > LENGTHS * arc[-1]:
+        at = next(c.at for c in reversed(body) if c.words[0] == "sec")
         raise CaseError(
-            f"{sections[-1].at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: check that both are of the "
+            f"{at}: c2_def is {arc[-1]:g} m long, the stations end at {r[-1]:g} m: check that both are of the "
             "same blade"
         )
     s = r * (arc[-1] / r[-1])
