@@ -8,7 +8,7 @@ from msgspec import Meta, Struct
 
 from .machines import turbines
 from .names import Typed
-from .readers.openfast.turbine import TurbineReading
+from .readers.source import TurbineReading
 from .schema import LOOSEST, Confirmations, Speeds, rad_s
 from .toml import convert, document, finite
 

@@ -42,7 +42,7 @@ def command(
     Parameters
     ----------
     case
-        A turbine's file (.fst, TOML), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name
+        A turbine's file (.fst, .htc, TOML), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name
         (`southwell cases`), one blade of a case as `case/blade`, or case files (TOML). Default: all cases. Of a turbine, the
         lowest eight modes are compared, of a blade the lowest six.
     codes
@@ -82,7 +82,7 @@ def command(
     fresh
         Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
     blade_only
-        Verify one blade of a turbine's primary file, clamped at the hub, instead of the whole turbine.
+        Verify one blade of a turbine's .fst or .htc file, clamped at the hub, instead of the whole turbine.
     """
     execution = Execution(cluster_workers(workers, scheduler), scheduler, out=out, fresh=fresh)
     request = Request(

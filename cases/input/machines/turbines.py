@@ -1,21 +1,22 @@
-"""Files of whole turbines: OpenFAST's primary files, and Southwell's TOML files of a turbine."""
+"""Files of whole turbines: OpenFAST's primary files, HAWC2's htc files, and Southwell's TOML files of a turbine."""
 
 from dataclasses import replace
 from pathlib import Path
 
 from .. import files
 from ..errors import CaseError
+from ..readers.hawc2 import turbine as hawc2
 from ..readers.openfast import turbine as openfast
-from ..readers.openfast.turbine import TurbineReading
-from ..readers.source import Mount
+from ..readers.source import Mount, TurbineReading
 from . import turbine_toml
 from .schema import DeckData
 
 
 def is_turbine(path: Path) -> bool:
     """Whether a file is that of a turbine with its tower."""
-    if path.suffix.lower() != ".toml":
-        return openfast.is_turbine(path)
+    suffix = path.suffix.lower()
+    if suffix != ".toml":
+        return hawc2.is_turbine(path) if suffix == ".htc" else openfast.is_turbine(path)
     try:
         return path.is_file() and turbine_toml.holds(path) == "turbine"
     except (CaseError, OSError):
@@ -28,9 +29,11 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     Raises:
         CaseError: naming the file and line or field at fault.
     """
-    toml = path.suffix.lower() == ".toml"
-    with files.reading(path, deck=not toml):
-        if not toml:
+    suffix = path.suffix.lower()
+    with files.reading(path, deck=suffix != ".toml"):
+        if suffix == ".htc":
+            return hawc2.read(path, mount)
+        if suffix != ".toml":
             return openfast.read(path, mount)
         if data := turbine_toml.deck(path):
             return _supported(path, data, openfast.read(path.parent / data.openfast, mount))

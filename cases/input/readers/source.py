@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ....core.blade import Blade
+from ....core.turbine.turbine import Turbine
 from ..errors import CaseError
 
 
@@ -91,6 +92,15 @@ class Reading:
                 "that states it (--main), or --hub-radius and --precone (0 if there is none)"
             )
         return self.blade
+
+
+@dataclass(frozen=True)
+class TurbineReading:
+    """A turbine and its source; ``speed``: the deck's initial rotor speed, rad/s."""
+
+    turbine: Turbine
+    source: Source
+    speed: float
 
 
 @dataclass(frozen=True)

@@ -79,7 +79,8 @@ def command(
 ) -> int:
     """Compute the Campbell diagram of a blade or a turbine and judge its margins.
 
-    An OpenFAST .fst file with a tower and at least three blades gives the modes of the whole turbine in the ground's frame.
+    An OpenFAST .fst or HAWC2 .htc file with a tower and at least three blades gives the modes of the whole turbine in the
+    ground's frame.
 
     Prints tables of the modes, of the margins to n per revolution (nP), of resonances, and of crossings and veerings. Writes
     campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds are inserted where two modes
@@ -142,7 +143,7 @@ def command(
     pdf
         Also write campbell.pdf; requires the extra `pdf` (Typst).
     blade_only
-        Of a turbine (.fst), solve one blade clamped at the hub.
+        Of a turbine (.fst, .htc), solve one blade clamped at the hub.
     """
     if strict and operating is None:
         raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")

@@ -25,6 +25,7 @@ from ..source import Mount, Reading, Source
 from ..text import ROUNDING, Table, Text, leading, load, table
 from . import bodies
 from .orientation import mounting
+from .parts import of_file
 
 Array = NDArray[np.float64]
 
@@ -37,6 +38,7 @@ AXES = (
     "HAWC2: x to the leading edge, y downwind, z along the blade; here x = its z, y = its x, z = its y, twist alike; "
     "matrices brought from elastic, shear and mass centres to the half-chord line"
 )
+ALONE = "tower, nacelle, shaft and hub of the htc are not part of the blade"
 _SET, _SUBSET = re.compile(r"\s*#\s*(\d+)"), re.compile(r"\s*\$\s*(\d+)\s+(\d+)")
 
 
@@ -68,7 +70,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     stiffness, mass = stiffness_of(columns), mass_of(columns)
     if body is not None:
         stations, curve, twist, at, (bent, swung) = bodies.half_chords(body, r)
-        stiffness, mass = _between(r, stiffness, at), _between(r, mass, at)
+        stiffness, mass = between(r, stiffness, at), between(r, mass, at)
         notes.append(
             f"stations: {len(r)} of the structural file and {len(at) - len(r)} more of c2_def; between them curve and twist "
             f"stray from its Akima splines by up to {bent:.1g} m and {np.degrees(swung):.1g}°"
@@ -79,6 +81,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     else:
         notes.append("no htc file: the half-chord line is straight and untwisted; only `pitch` rotates the sections")
     mounted = complete(mount, stated)
+    if htc is not None:
+        whole = of_file(htc.path, htc)
+        notes.append(f"not the whole turbine: {whole}" if isinstance(whole, str) else ALONE)
     if stated is not None:
         angles = ", ".join(f"{name} {np.degrees(getattr(stated, name)):.6g}°" for name in ("precone", "pitch"))
         notes.append(f"orientation of the htc's bodies: hub_radius {stated.hub_radius:.6g} m, {angles}")
@@ -156,7 +161,7 @@ def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, 
     return columns["r"], stiffness_of(columns), mass_of(columns)
 
 
-def _between(r: Array, values: Array, at: Array) -> Array:
+def between(r: Array, values: Array, at: Array) -> Array:
     """Sections (n, 6, 6) interpolated linearly from their r to the positions ``at``, as in ``core``."""
     k = np.clip(np.searchsorted(r, at, side="right") - 1, 0, len(r) - 2)
     t = np.clip((at - r[k]) / (r[k + 1] - r[k]), 0.0, 1.0)[:, None, None]

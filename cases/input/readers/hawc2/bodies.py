@@ -100,22 +100,31 @@ def body_named(htc: Text, commands: Body, beginning: str) -> Body:
     Raises:
         CaseError: if there is none.
     """
-    body: Body = []
-    inside = False
-    for command in commands:
-        low = [w.lower() for w in command.words]
-        if low[:2] == ["begin", "main_body"]:
-            body, inside = [], True
-        elif low[:2] == ["end", "main_body"] and inside:
-            inside = False
-            names = [c.words[1].lower() for c in body if c.words[0] == "name" and len(c.words) > 1]
-            if names and names[0].startswith(beginning) and any(c.words[0] == "sec" for c in body):
-                return body
-        elif inside:
-            body.append(command)
+    for name, body in main_bodies(commands).items():
+        if name.startswith(beginning) and any(c.words[0] == "sec" for c in body):
+            return body
     raise CaseError(
         f"{htc.path}: no main_body whose name begins with {beginning} and that has c2_def: give the {beginning}'s htc"
     )
+
+
+def main_bodies(commands: Body) -> dict[str, Body]:
+    """The commands of each main_body by its name in lower case; those of a copy are the commands of what it copies."""
+    out: dict[str, Body] = {}
+    body: Body | None = None
+    for command in commands:
+        low = [w.lower() for w in command.words[:2]]
+        if low == ["begin", "main_body"]:
+            body = []
+        elif low == ["end", "main_body"] and body is not None:
+            named = {c.words[0]: c.words[1].lower() for c in body if len(c.words) > 1}
+            original = out.get(named.get("copy_main_body", ""))
+            if "name" in named:
+                out.setdefault(named["name"], original or body)
+            body = None
+        elif body is not None:
+            body.append(command)
+    return out
 
 
 def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
@@ -149,11 +158,11 @@ UNUSED = {
 """Commands of a main_body that affect its modes and are not used: unit and reason."""
 
 
-def left(body: Body) -> tuple[Unused, ...]:
-    """Unused non-zero quantities of a body; for a concentrated mass (node, x, y, z, mass, …) the mass."""
+def left(body: Body, masses: bool = True) -> tuple[Unused, ...]:
+    """Unused non-zero quantities of a body; for a concentrated mass (node, x, y, z, mass, …) the mass, if they are unused."""
     out: list[Unused] = []
     for command in body:
-        if command.words[0] in UNUSED:
+        if command.words[0] in UNUSED and (masses or command.words[0] != "concentrated_mass"):
             unit, why = UNUSED[command.words[0]]
             numbers = [n for n in map(number, command.words[1:]) if n is not None and np.isfinite(n)]
             values = numbers[4:5] if command.words[0] == "concentrated_mass" else numbers
@@ -168,7 +177,7 @@ def points(body: Body) -> Array:
         CaseError: naming the line of the section at fault.
     """
     sections = [c for c in body if c.words[0] == "sec"]
-    c2 = np.array([_section(c) for c in sections])
+    c2 = np.array([section(c) for c in sections])
     for count in (c for c in body if c.words[0] == "nsec"):
         if number(count.words[-1]) != len(c2):
             raise CaseError(
@@ -216,7 +225,12 @@ def half_chords(body: Body, r: Array) -> HalfChords:
     return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(bent), float(swung)))
 
 
-def _section(command: Command) -> list[float]:
+def section(command: Command) -> list[float]:
+    """x, y, z, m, and twist, degrees, of a ``sec`` of c2_def.
+
+    Raises:
+        CaseError: it has other words.
+    """
     values = [number(w) for w in command.words[2:6]]
     if len(values) != 4 or any(v is None or not believable(v) for v in values):
         raise CaseError(f"{command.at}: sec: not x, y, z and twist: {' '.join(command.words)}: correct it")

@@ -1,9 +1,9 @@
-"""How HAWC2's htc file mounts the blade on the rotor: hub radius, precone and pitch from the orientation of its bodies.
+"""The orientation of the bodies of HAWC2's htc file, and how they mount the blade: hub radius, precone and pitch.
 
 A ``relative`` block rotates ``body2`` from ``body1`` by Euler angles in degrees, each about the axes that the angles before it
-have rotated; several commands follow each other. ``ini_rotvec_d1`` is the rotor's axis, in the axes of the body that turns with
-it. A body ends at the last point of its c2_def. Source: T. J. Larsen, A. M. Hansen, *How 2 HAWC2, the user's manual*,
-Risø-R-1597, ch. 6.
+have rotated, or by Euler parameters; several commands follow each other. ``ini_rotvec_d1`` is the rotor's axis, in the axes of
+the body that turns with it, and its speed. A body ends at the last point of its c2_def. Source: T. J. Larsen, A. M. Hansen,
+*How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 6.
 """
 
 from collections.abc import Sequence
@@ -12,7 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from .....core.space.spatial import rotation
+from .....core.space.spatial import rotation, skew
 from ..source import Mount
 from ..text import number
 from .bodies import Body, Command
@@ -21,6 +21,9 @@ Array = NDArray[np.float64]
 
 MAX_BODIES = 10
 """Maximum number of bodies between the rotor's axis and the blade."""
+
+UNIT = 1e-3
+"""Largest difference of the norm of Euler parameters from 1."""
 
 ROUNDED = 12
 """Decimals of an angle in rad: the product of rotations by right angles is exact to about 1e-16 only."""
@@ -38,6 +41,7 @@ class Relative:
         at_end: whether body2 begins at the end of body1 (else at its beginning).
         axes: (3, 3) the axes of body2 in those of body1.
         axis: (3,) rotor's axis in the axes of body2; None if the block has none.
+        speed: about this axis, rad/s.
     """
 
     parent: str
@@ -45,6 +49,32 @@ class Relative:
     at_end: bool
     axes: Array
     axis: Array | None
+    speed: float = 0.0
+
+
+def relatives(commands: Sequence[Command]) -> dict[str, Relative]:
+    """The ``relative`` blocks that are understood, by the name of body2."""
+    read = (_relative(block) for _, block in blocks(commands, "relative"))
+    return {block.child: block for block in read if block}
+
+
+def base(commands: Sequence[Command]) -> tuple[str, Array] | None:
+    """Name and axes (3, 3) in the ground's axes of the body in the ``base`` block; None if it is not understood."""
+    for _, block in blocks(commands, "base"):
+        name, axes = "", np.eye(3)
+        for command in block:
+            which, what = _which(command)
+            if (which, what) == ("", "") and len(command.words) > 1:
+                name = command.words[1].lower()
+            elif which == "" and what in TURNS:
+                turned = _turned(what, command)
+                if turned is None:
+                    return None
+                axes = axes @ turned
+            elif which != "inipos":
+                return None
+        return (name, axes) if name else None
+    return None
 
 
 def mounting(commands: Sequence[Command], blade: str) -> Mount | None:
@@ -52,16 +82,15 @@ def mounting(commands: Sequence[Command], blade: str) -> Mount | None:
 
     The pitch angle of HAWC2's bearings is a result of a simulation and not included.
     """
-    blocks = {block.child: block for block in map(_relative, _blocks(commands)) if block}
-    ends = _ends(commands)
+    by_child, ends = relatives(commands), ends_of(commands)
     axes, root, body = np.eye(3), np.zeros(3), blade
     for _ in range(MAX_BODIES):
-        block = blocks.get(body)
+        block = by_child.get(body)
         if block is None:
             return None
         if block.axis is not None and body != blade:
-            return _mount(root, axes, block.axis)
-        turns = blocks.get(block.parent)
+            return mounted(root, axes, block.axis)
+        turns = by_child.get(block.parent)
         rotor = turns is not None and turns.axis is not None
         start = ends.get(block.parent) if block.at_end and not rotor else np.zeros(3)
         if start is None:
@@ -70,8 +99,10 @@ def mounting(commands: Sequence[Command], blade: str) -> Mount | None:
     return None
 
 
-def _mount(root: Array, axes: Array, axis: Array) -> Mount | None:
-    """The mount of a blade with axes ``axes`` (3, 3) and its root at ``root`` (3,) m from a point of the rotor's axis."""
+def mounted(root: Array, axes: Array, axis: Array) -> Mount | None:
+    """The mount of a blade with axes ``axes`` (3, 3) and its root at ``root`` (3,) m from the hub's centre; None if it is not
+    on the blade's axis.
+    """
     along, downwind = axes[:, 2], axis / np.linalg.norm(axis)
     if axes[:, 1] @ downwind < 0:  # HAWC2's y of a blade points downwind
         downwind = -downwind
@@ -84,43 +115,76 @@ def _mount(root: Array, axes: Array, axis: Array) -> Mount | None:
     return Mount(hub_radius=radius, precone=float(precone), pitch=float(pitch))
 
 
-def _blocks(commands: Sequence[Command]) -> list[Body]:
-    """The commands of each ``relative`` block."""
-    out: list[Body] = []
-    inside = False
+def blocks(commands: Sequence[Command], *kinds: str) -> list[tuple[str, Body]]:
+    """Kind and commands of each ``begin kind … end kind``, for these kinds."""
+    out: list[tuple[str, Body]] = []
+    inside = ""
     for command in commands:
         words = tuple(word.lower() for word in command.words[:2])
-        if words == ("begin", "relative"):
-            out.append([])
-        elif inside and words != ("end", "relative"):
-            out[-1].append(command)
-        inside = words == ("begin", "relative") or (inside and words != ("end", "relative"))
+        if len(words) == 2 and words[0] == "begin" and words[1] in kinds:
+            inside = words[1]
+            out.append((inside, []))
+        elif words == ("end", inside):
+            inside = ""
+        elif inside:
+            out[-1][1].append(command)
     return out
+
+
+TURNS = ("eulerang", "eulerpar")
+"""Commands that rotate a body."""
+
+
+def _which(command: Command) -> tuple[str, str]:
+    """The number of the body of a command, and what the command sets: ``body2_eulerang`` is 2 and eulerang."""
+    which, _, what = command.words[0].removeprefix("m").removeprefix("body").removeprefix("bdy").partition("_")
+    return which, what
+
+
+def _turned(what: str, command: Command) -> Array | None:
+    """The rotation (3, 3) of a command; None if its numbers are not those of one."""
+    if what == "eulerang":
+        angles = _vector(command)
+        if angles is None:
+            return None
+        out = np.eye(3)
+        for k, angle in enumerate(np.radians(angles)):
+            out = out @ rotation(k, angle)
+        return out
+    values = [number(word) for word in command.words[1:5]]
+    if len(values) != 4 or any(v is None or not np.isfinite(v) for v in values):
+        return None
+    q = np.array(values, float)
+    if abs(np.linalg.norm(q) - 1.0) > UNIT:
+        return None
+    q /= np.linalg.norm(q)
+    across = skew(q[1:])
+    return np.eye(3) + 2.0 * q[0] * across + 2.0 * across @ across
 
 
 def _relative(block: Body) -> Relative | None:
     """A block; None if it is incomplete or has commands of another kind."""
     named: dict[str, tuple[str, ...]] = {}
-    axes, axis = np.eye(3), None
+    axes, axis, speed = np.eye(3), None, 0.0
     for command in block:
-        body, _, what = command.words[0].removeprefix("m").removeprefix("body").removeprefix("bdy").partition("_")
+        which, what = _which(command)
         if not what:
-            named[body] = command.words[1:]
-        elif body == "2" and what == "eulerang":
-            angles = _vector(command)
-            if angles is None:
+            named[which] = command.words[1:]
+        elif which == "2" and what in TURNS:
+            turned = _turned(what, command)
+            if turned is None:
                 return None
-            for k, angle in enumerate(np.radians(angles)):
-                axes = axes @ rotation(k, angle)
-        elif body == "2" and what == "ini_rotvec_d1":
-            axis = _vector(command)
+            axes = axes @ turned
+        elif which == "2" and what == "ini_rotvec_d1":
+            axis, speed = _vector(command), number((*command.words, "", "")[4]) or 0.0
         elif what not in ("ini_vec_d1",):
             return None
     if not all(len(named.get(body, ())) > 1 for body in "12") or named["2"][1] != "1":
         return None
     if named["1"][1].lower() not in ("last", "1") or (axis is not None and not axis.any()):
         return None
-    return Relative(named["1"][0].lower(), named["2"][0].lower(), named["1"][1].lower() == "last", axes, axis)
+    at_end = named["1"][1].lower() == "last"
+    return Relative(named["1"][0].lower(), named["2"][0].lower(), at_end, axes, axis, abs(speed))
 
 
 def _vector(command: Command) -> Array | None:
@@ -130,7 +194,7 @@ def _vector(command: Command) -> Array | None:
     return np.array(values, float)
 
 
-def _ends(commands: Sequence[Command]) -> dict[str, Array]:
+def ends_of(commands: Sequence[Command]) -> dict[str, Array]:
     """The last point (3,) m of each body's c2_def by the body's name; bodies that are copies included."""
     out: dict[str, Array] = {}
     name = ""

@@ -1,7 +1,7 @@
 """The tower in a HAWC2 htc: its structural file and the height of its c2_def.
 
 HAWC2's ground axes are x to the side, y downwind, z down. Only sections without offsets are read: bending about x is fore-aft,
-about y side-side. Nacelle, shaft and rotor are other bodies, which are not read. Source: T. J. Larsen, A. M. Hansen,
+about y side-side. Nacelle, shaft and rotor are other bodies (``turbine``). Source: T. J. Larsen, A. M. Hansen,
 *How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 6.
 """
 
@@ -13,7 +13,7 @@ from .....core.blade import Blade, BladeError, coupled
 from .....core.turbine.tower import Tower
 from ...errors import CaseError
 from ..source import Source
-from ..text import load, number
+from ..text import Text, load, number
 from . import blade, bodies
 from .bodies import LENGTHS
 
@@ -29,6 +29,20 @@ def read(path: Path) -> tuple[Tower, Source]:
     """
     htc = load(path)
     body = bodies.body_named(htc, bodies.commands(htc), "tower")
+    tower, file = beam(htc, path.stem, body)
+    notes = (
+        "clamped at the base, without weight",
+        "nacelle, shaft and rotor are other bodies of the htc, which are not part of the tower",
+    )
+    return Tower(tower), Source(NAME, (path, file), AXES, notes, bodies.left(body))
+
+
+def beam(htc: Text, name: str, body: bodies.Body) -> tuple[Blade, Path]:
+    """The tower's sections as a beam that stands, and its structural file.
+
+    Raises:
+        CaseError: naming the file and line at fault.
+    """
     file, subset = bodies.properties(htc, body)
     text = load(file)
     r, stiffness, mass = blade.sections(text, subset)
@@ -42,13 +56,9 @@ def read(path: Path) -> tuple[Tower, Source]:
     if r[0] != 0 or abs(r[-1] - height) > LENGTHS * height:
         raise CaseError(f"{file}: r: from {r[0]:g} to {r[-1]:g} m: c2_def is {height:g} m high; correct one")
     try:
-        beam = Blade(path.stem, r * (height / r[-1]), stiffness, mass, np.zeros(len(r)))
+        tower = Blade(name, r * (height / r[-1]), stiffness, mass, np.zeros(len(r)))
     except BladeError as error:
         raise CaseError(f"{file}: {error}") from error
-    if coupled(beam):
+    if coupled(tower):
         raise CaseError(f"{file}: offsets of centres or inclined principal axes: not supported for a tower")
-    notes = (
-        "clamped at the base, without weight",
-        "nacelle, shaft and rotor are other bodies of the htc, which are not read",
-    )
-    return Tower(beam), Source(NAME, (path, file), AXES, notes, bodies.left(body))
+    return tower, file

@@ -7,7 +7,6 @@ OpenFAST documentation, *ElastoDyn*.
 """
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -16,7 +15,7 @@ from .....core.space import spatial as sp
 from .....core.space.inertia import transformed
 from .....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from ...errors import CaseError
-from ..source import Mount, Source, Unused, unused
+from ..source import Mount, Source, TurbineReading, Unused, unused
 from ..text import Text, keys, load, number, value, whole
 from . import elastodyn_tower as tower_reader
 from . import fst
@@ -31,15 +30,6 @@ FLOATER = f"{GROUND}; a TOML file with the keys openfast and support gives them 
 DAMPING = {"DTTorDmp": "N m s/rad"}
 PLATFORM = ("PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF")
 NO_TOWER_TORSION = "the tower is rigid in torsion, as in ElastoDyn"
-
-
-@dataclass(frozen=True)
-class TurbineReading:
-    """A turbine and its source; ``speed``: the deck's initial rotor speed, rad/s."""
-
-    turbine: Turbine
-    source: Source
-    speed: float
 
 
 def is_turbine(path: Path) -> bool:

@@ -9,6 +9,7 @@ from southwell.cases.campbell.required import RequiredMargin
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers.openfast import turbine
 from southwell.reports.cli import app
+from southwell.tests.support import htc_decks
 from southwell.tests.support.turbine_decks import deck
 
 
@@ -45,6 +46,14 @@ def test_one_blade_of_a_turbine_on_request(tmp_path: Path, capsys: pytest.Captur
     status, shown, _ = southwell(line, capsys)
     assert status == 0
     assert "one blade of the turbine, clamped at the hub" in shown
+
+
+def test_an_htc_becomes_a_diagram_of_the_turbine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = htc_decks.htc(tmp_path)
+    status, shown, err = southwell(f"campbell {path} --modes 2 --rpm 0,20 -o {tmp_path / 'out'}", capsys)
+    assert (status, err) == (0, "")
+    assert shown.startswith("small.htc: the whole turbine on rigid ground")
+    assert "taken as rigid, with all mass: towertop below 0.001 %" in shown
 
 
 def test_modes_of_a_tower(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
