@@ -57,8 +57,10 @@ readme: $(INSTALLED)
 
 # into build/site, with the results of the last make verify if any; run as a module, because the script would import the
 # command southwell, which lies beside it, instead of the package
+# the extra docs alone: an installation of `.[docs]` compiles the kernels again
+DOCS := import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['optional-dependencies']['docs'], sep='\n')
 docs: $(INSTALLED)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[docs]'
+	$(BIN)/python -c "$(DOCS)" | $(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement /dev/stdin
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
 
 $(INSTALLED): pyproject.toml setup.py $(KERNELS)

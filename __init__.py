@@ -1,6 +1,4 @@
-"""Southwell verifies the natural frequencies of rotating blades.
-
-::
+"""Southwell verifies the natural frequencies of rotating blades. For example::
 
     import southwell
 

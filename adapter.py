@@ -1,6 +1,4 @@
-"""What an author of a code imports: this module keeps its names between versions; others may move.
-
-::
+"""What an author of a code imports: this module keeps its names between versions; others may move::
 
     from southwell.adapter import BladeAdapter, CodeError, Effects, Independence, Modes, STATIONS, sample
 

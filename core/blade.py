@@ -13,6 +13,8 @@ Strains and velocities are ordered ``(axial x, shear y, shear z, torsion x, bend
 forces are ordered ``(Fx, Fy, Fz, Mx, My, Mz)``, all at the reference curve. SI units and radians throughout.
 """
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field, replace
 
 import numpy as np

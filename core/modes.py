@@ -1,5 +1,7 @@
 """Natural frequencies and mode shapes in the form that every code returns."""
 
+from __future__ import annotations
+
 from dataclasses import dataclass, field
 
 import numpy as np

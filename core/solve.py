@@ -3,6 +3,7 @@
 import time
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from inspect import Parameter, signature
 from typing import Concatenate, ParamSpec
 
 import numpy as np
@@ -133,11 +134,16 @@ def _checked(omegas: Iterable[float], count: int) -> Iterator[float]:
 def _at_one_speed(
     swept: Callable[Concatenate[Blade, Iterable[float], P], Iterator[Modes]],
 ) -> Callable[Concatenate[Blade, float, P], Modes]:
-    """The function of a blade and one speed (rad/s) with the other arguments of ``swept``."""
+    """The function of a blade and one speed (rad/s) with the other arguments of ``swept``, shown by ``help`` with these."""
 
     def modes(blade: Blade, omega: float, /, *args: P.args, **kwargs: P.kwargs) -> Modes:
         return next(swept(blade, [omega], *args, **kwargs))
 
+    given = signature(swept)
+    blade, _, *others = given.parameters.values()
+    speed = Parameter("omega", Parameter.POSITIONAL_OR_KEYWORD, annotation=float)
+    modes.__dict__["__signature__"] = given.replace(parameters=(blade, speed, *others), return_annotation=Modes)
+    modes.__doc__ = f"The modes at one speed ``omega``, rad/s; other arguments and errors as for ``{swept.__name__}``."
     return modes
 
 

@@ -16,6 +16,9 @@ from southwell.reports.site import pages
 
 FORMULA = re.compile(r'<(span|div) class="arithmatex">\\[(\[](.*?)\\[)\]]</\1>', re.S)
 NUMBER = re.compile(r"\\tag\{(.*?)\}")
+INLINE = re.compile(r"(?<!</span>)(?<=<code>)[^<\s]+(?=</code>)")
+CELL = re.compile(r"<td.*?</td>", re.S)
+UNIT = re.compile(r"(?<=\d) (?=[%°])|(?<=[±✔≈✘□~]) (?=[<\d+−])")
 BOLD = re.compile(r'<m[in] mathvariant="bold(?:-italic)?">(.*?)</m[in]>')
 
 RUN = Path(__file__).parents[1] / "reports" / "out"
@@ -72,8 +75,10 @@ def on_files(files: Files, config: MkDocsConfig) -> Files:
 
 
 def on_page_content(html: str, **_: Any) -> str:
-    """LaTeX to MathML."""
-    return FORMULA.sub(_mathml, html)
+    """LaTeX to MathML; file names break after a slash and numbers in tables stay on the line of their unit; no ``::``."""
+    html = FORMULA.sub(_mathml, html).replace("::</p>", ":</p>")
+    html = INLINE.sub(lambda m: m[0].replace("/", "/<wbr>"), html)
+    return CELL.sub(lambda m: UNIT.sub("\N{NO-BREAK SPACE}", m[0]), html)
 
 
 def _mathml(match: re.Match[str]) -> str:

@@ -4,6 +4,8 @@ First arithmetic, then the division into an offset at rest and a slope with spee
 if one does not suffice, in pairs. A cause is named only if it explains more than chance; otherwise no cause is known.
 """
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path

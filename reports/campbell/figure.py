@@ -121,7 +121,8 @@ def _below(diagram: Campbell, units: Units) -> str:
     mesh = f"accuracy {request.accuracy:g}" if request.elements is None else f"{request.elements} elements"
     words = [f"{len(request.speeds)} speeds, {mesh}"]
     if len(diagram.tracks.omega) > len(request.speeds):
-        words[0] += f", {len(diagram.tracks.omega) - len(request.speeds)} intermediate speeds where modes come close"
+        more = len(diagram.tracks.omega) - len(request.speeds)
+        words[0] += f", {more} intermediate {'speed' if more == 1 else 'speeds'} where modes come close"
     if request.operating:
         low, high = (o * units.speeds for o in request.operating)
         words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {request.margin}")

@@ -1,5 +1,7 @@
 """``southwell.read``, ``.modes``, ``.root_loads``, ``.campbell`` and ``.verify``."""
 
+from __future__ import annotations
+
 from collections.abc import Sequence
 from contextlib import ExitStack
 from math import radians

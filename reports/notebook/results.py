@@ -77,7 +77,8 @@ class ModesResult(Modes):
             shape = self.shapes[k] * (1, 1, 1, self.blade.length / 10)  # a rotation by its displacement at a tenth of L
             part = int(np.abs(shape).max(axis=0).argmax())
             tip = shape[np.abs(shape[:, part]).argmax(), part]
-            axes.plot(STATIONS * self.blade.length, (shape[:, part] / tip).real, label=f"{name} ({MOTIONS[part]})")
+            label = name if name.startswith(MOTIONS[part]) else f"{name} ({MOTIONS[part]})"
+            axes.plot(STATIONS * self.blade.length, (shape[:, part] / tip).real, label=label)
         axes.set_xlabel("distance from the root, m")
         axes.set_ylabel("mode shape, scaled")
         axes.legend()

@@ -102,7 +102,7 @@ def version(run: Run, code: Description) -> str:
         return ran
     if code.failure:
         return f"cannot be loaded: {code.failure.reason}"
-    return code.version or f"not installed: `{code.hint}`"
+    return code.version or f"not installed: {code.hint}"
 
 
 def differences(run: Run, cells: Sequence[Cell]) -> str:

@@ -1,6 +1,8 @@
 """What a notebook gets: the same numbers as core's, in tables and figures that show themselves."""
 
+import inspect
 import json
+import pydoc
 from pathlib import Path
 
 import matplotlib as mpl
@@ -48,13 +50,25 @@ def test_the_file_of_a_case_is_read(blade: southwell.Blade) -> None:
     np.testing.assert_array_equal(read.mass, blade.mass)
 
 
+def test_help_shows_the_parameters_that_a_user_types() -> None:
+    """Of the functions of one speed that are made of sweeps, and without the members of NumPy's unions."""
+    public = [value for name in southwell.__all__ if callable(value := getattr(southwell, name))]
+    assert [f for f in public if "numpy._typing" in pydoc.render_doc(f)] == []
+    text = pydoc.plain(pydoc.render_doc(southwell.modes)).replace("'", "")
+    assert "modes(blade: Blade, omega: float | None = None, *, rpm" in text
+    for one, many in ((solve.modes, solve.sweep), (solve.mesh_modes, solve.mesh_sweep)):
+        shown = list(inspect.signature(one).parameters)
+        assert shown == ["blade", "omega", *list(inspect.signature(many).parameters)[2:]]
+        assert f"arguments and errors as for ``{many.__name__}``" in pydoc.render_doc(one)
+
+
 def test_a_plot_has_every_mode_asked_for() -> None:
     """Torsion modes move no point of the axis; they used to be omitted without a word."""
     section = {"EA": 1e8, "GJ": 1e2, "EI_y": 1e5, "EI_z": 2e5, "mass": 3.0, "I_y": 0.1, "I_z": 0.1}
     result = southwell.modes(southwell.uniform_blade("beam", 5.0, 0.5, **section), OMEGA, modes=4, elements=10)
     assert "torsion 1" in result.names
     axes = result.plot(modes=4)
-    assert [str(line.get_label()).split(" (")[0] for line in axes.lines] == result.names
+    assert [str(line.get_label()) for line in axes.lines] == result.names
     for line in axes.lines:
         assert np.abs(np.asarray(line.get_ydata(), float)).max() == pytest.approx(1.0)
 
