@@ -81,8 +81,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     else:
         notes.append("no htc file: the half-chord line is straight and untwisted; only `pitch` rotates the sections")
     mounted = complete(mount, stated)
-    if htc is not None:
-        whole = of_file(htc.path, htc)
+    for htc in files[1:]:
+        whole = of_file(load(htc))
         notes.append(f"not the whole turbine: {whole}" if isinstance(whole, str) else ALONE)
     if stated is not None:
         angles = ", ".join(f"{name} {np.degrees(getattr(stated, name)):.6g}°" for name in ("precone", "pitch"))

@@ -6,7 +6,6 @@ T. J. Larsen, A. M. Hansen, *How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 
 """
 
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import NDArray
@@ -120,7 +119,7 @@ def parts(htc: Text, commands: bodies.Body) -> Parts | str:
     )
 
 
-def of_file(path: Path, htc: Text) -> Parts | str:
+def of_file(htc: Text) -> Parts | str:
     """``parts`` of an htc; a file that is missing is what it lacks."""
     try:
         return parts(htc, bodies.commands(htc))

@@ -54,7 +54,7 @@ def is_turbine(path: Path) -> bool:
         htc = load(path)
     except (CaseError, OSError):
         return False
-    return bodies.matches_format(htc) and isinstance(of_file(path, htc), Parts)
+    return bodies.matches_format(htc) and isinstance(of_file(htc), Parts)
 
 
 def read(path: Path, mount: Mount | None = None) -> TurbineReading:
