@@ -29,6 +29,9 @@ LEAST_MAC = 0.8
 RIVAL_MAC = 0.5
 """A second candidate with at least this MAC makes a pairing ambiguous and is noted."""
 
+ALIKE = 0.05
+"""A candidate is no rival if its MAC exceeds that of its own partner, another mode of the reference, by less than this."""
+
 DEGENERATE = 2e-3
 """Relative frequency gap below which codes may return different linear combinations of two shapes."""
 
@@ -132,13 +135,16 @@ def pair(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: fl
     table = mac(ours, theirs, weight)
     rows, columns = linear_sum_assignment(-table)
     partner = dict(zip(rows.tolist(), columns.tolist(), strict=True))
+    own = mac(ours, ours, weight)
+    alike = np.zeros_like(table)  # MAC of each mode with the reference's mode whose partner a column is
+    alike[:, columns] = own[:, rows]
     frequencies, pairs = reference.frequencies, dict[int, Pair]()
     for group in groups(frequencies):
         values = reference.values[group]
         same = float(np.abs(values - values[0]).max()) <= DOUBLE * frequencies[group[-1]]
         if same or any(table[k, partner[k]] < least for k in group if k in partner):
             pairs.update(_as_subspace(group, partner, ours, theirs, weight, least))
-    return [pairs.get(k) or _alone(table[k], partner.get(k), other.frequencies, least) for k in indices]
+    return [pairs.get(k) or _alone(table[k], alike[k], partner.get(k), other.frequencies, least) for k in indices]
 
 
 def _as_subspace(
@@ -154,14 +160,14 @@ def _as_subspace(
     return {k: Pair(mode, likeness, note) for k, mode in zip(group, others, strict=True)}
 
 
-def _alone(row: Array, mode: int | None, frequencies: Array, least: float) -> Pair:
+def _alone(row: Array, alike: Array, mode: int | None, frequencies: Array, least: float) -> Pair:
     if not len(row):
         return Pair(None, 0.0, "no partner: the code returned no modes")
     if mode is None or row[mode] < least:
         best = int(row.argmax())
         nearest = f"its most similar mode, at {frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"
         return Pair(None, float(row[best]), f"no partner: {nearest}")
-    rivals = np.delete(row, mode)
+    rivals = np.delete(np.where(row <= alike + ALIKE, 0.0, row), mode)
     if rivals.max(initial=0.0) < RIVAL_MAC:
         return Pair(mode, float(row[mode]))
     second = float(np.delete(frequencies, mode)[rivals.argmax()])

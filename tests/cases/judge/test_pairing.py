@@ -153,6 +153,18 @@ def test_a_rival_is_mentioned() -> None:
     assert pairs[0].ambiguous
 
 
+def test_modes_as_alike_as_those_of_the_reference_are_no_rivals() -> None:
+    """Two modes of a turbine may differ mostly in what is not compared; a third one as alike, which core lacks, is a rival."""
+    mostly = 0.75 * shape(FLAP, 1) + 0.6 * shape(AXIAL, 1)
+    reference = modes([10.0, 19.0], [shape(FLAP, 1), mostly])
+    answer = modes([10.0, 19.0], list(reference.shapes))
+    assert [(p.mode, p.note) for p in pair(reference, answer, range(2))] == [(0, ""), (1, "")]
+    ghost = 0.75 * shape(FLAP, 1) + 0.6 * shape(CHORD, 1)
+    (first, _) = pair(reference, modes([10.0, 12.0, 19.0], [shape(FLAP, 1), ghost, mostly]), range(2))
+    assert first.mode == 0
+    assert first.ambiguous
+
+
 def test_a_rival_of_nearly_the_same_frequency_is_not_ambiguous() -> None:
     """Two modes 0.1 % apart may be any combination of two shapes."""
     rival = 0.75 * REFERENCE.shapes[0] + 0.6 * shape(AXIAL, 1)
