@@ -56,6 +56,7 @@ class Stations:
         twist: (n,) rad.
         curve: (n, 3) reference curve from the root, m.
         mounting: hub_radius (m), precone (rad), pitch (rad) and tip_mass (kg), where the files state them.
+        violations: what the file violates of its format's schema, one line for each field.
     """
 
     reader: str
@@ -65,6 +66,7 @@ class Stations:
     twist: Array
     curve: Array
     mounting: Mapping[str, float] = field(default_factory=dict)
+    violations: tuple[str, ...] = ()
 
 
 def straight(s: Array) -> Array:

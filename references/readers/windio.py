@@ -15,6 +15,7 @@ from scipy.interpolate import PchipInterpolator, make_interp_spline
 from . import sections
 from .axis import Curve, beamdyn_roll, tangents
 from .stations import Array, Asked, NotReadError, Stations, parser
+from .windio_schema import violations
 
 PLAUSIBLE = 1.0
 """Largest twist in radians: a file of windIO 1 with a larger number has degrees."""
@@ -63,7 +64,8 @@ def read(path: Path, asked: Asked) -> Stations:
     twist_angle = beamdyn_roll(tangents(curve, at)) - angle(at)
     mount = {**_hub(turbine), "tip_mass": _tip(elastic)}
     return Stations(
-        reader, arc, sections.rigid(matrices[0], *absent), matrices[1], twist_angle, curve.values(at), mount
+        *(reader, arc, sections.rigid(matrices[0], *absent), matrices[1], twist_angle, curve.values(at), mount),
+        violations=violations(turbine) if "structure" in blade else (),
     )
 
 

@@ -16,6 +16,7 @@ from southwell.cases.input.readers.hawc2 import blade as hawc2
 from southwell.cases.input.readers.openfast import beamdyn, elastodyn
 from southwell.cases.reading.comparison import compare
 from southwell.cases.reading.second import SecondReading, read_again
+from southwell.cases.solve.properties import of_reading
 from southwell.core.blade import Blade
 from southwell.references.readers import openfast as second_openfast
 from southwell.references.readers import stations as second_stations
@@ -367,3 +368,24 @@ def test_a_file_that_the_parser_does_not_read_is_no_difference() -> None:
     repeated = again(decks.BLADES / "beamdyn_old_main.dat")
     assert repeated.missing.startswith("BeamDyn: ")
     assert not repeated.properties
+
+
+def test_a_field_that_violates_windios_schema_is_named(tmp_path: Path) -> None:
+    """The schema has the cone of both kinds of rotors positive; structural_damping is required, and the sample has none."""
+    pytest.importorskip("windIO", reason="its package ships the schema: pip install windIO")
+    _, data = blade_files.samples()
+    damped = {"mu": [0.0] * 6}
+    data["components"]["blade"]["structure"]["elastic_properties"]["structural_damping"] = damped
+    path = blade_files.written(tmp_path / "right.yaml", data)
+    reading = readers.reading(path)
+    file = readers.BladeFile(path, reading.blade, reading.source, Mount())
+    assert all(row.verdict == "pass" for row in of_reading("case", file, reading.blade)[0])
+    data["components"]["hub"]["cone_angle"] = -4.0
+    path = blade_files.written(tmp_path / "wrong.yaml", data)
+    reading = readers.reading(path)
+    rows, _ = of_reading("case", readers.BladeFile(path, reading.blade, reading.source, Mount()), reading.blade)
+    (unsure,) = [row for row in rows if row.verdict != "pass"]
+    assert unsure.verdict == "inconclusive"
+    assert unsure.reason.startswith(
+        "components.hub.cone_angle: -4.0 is less than the minimum of 0, by the schema of windIO"
+    )
