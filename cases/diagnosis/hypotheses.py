@@ -71,6 +71,7 @@ def _down(name: str, *direction: float) -> Hypothesis:
 PHYSICS = (
     _lacking("without geometric stiffness", geometric=False),
     _model("with geometric stiffness reversed", geometric=-1.0),
+    _model("with the sign of T′w′ reversed in the beam's equation", following=2.0),
     _lacking("without Coriolis terms", coriolis=False),
     _lacking("without rotary inertia", rotary_inertia=False),
     _lacking("about the undeformed blade", prestretch=False),

@@ -12,13 +12,13 @@ from ...core.element.discretize import Mass, discretize
 from ...core.element.mesh import Mesh
 from ...core.modes import Modes
 from ...core.spectrum import mesh_solver
-from ...core.spectrum.eigen import Eigen, EigenError, UnstableError, gyroscopic
+from ...core.spectrum.eigen import Eigen, EigenError, UnstableError, damped, gyroscopic
 from ...core.spectrum.lanczos import lanczos
 from ...core.spectrum.mesh_solver import Options
 from ...core.steady.blade_state import SteadyStateError
 from ...core.threads import one_thread
 from ...core.tree import pencil
-from ...core.tree.links import product
+from ...core.tree.links import product, twists
 from ...core.tree.mode_shapes import mode_shapes
 from ...core.tree.pencil import Shape, TreePencil
 from ...core.turbine.assumed import restricted_motions
@@ -29,6 +29,9 @@ Array = NDArray[np.float64]
 
 ELEMENTS = 20
 """Elements of a solution with and without a hypothesis: the discretisation errors cancel in its effect."""
+
+FOLLOWED = 24
+"""Modes at rest that span the motion of a model whose centrifugal force follows the sections."""
 
 SLOW = 0.05
 """Speed at which Southwell's coefficient is taken, as a fraction of the lowest frequency at rest."""
@@ -47,6 +50,8 @@ class Model:
         speed: factor on the rotor speed.
         softening: factor on spin softening.
         geometric: factor on geometric stiffness.
+        following: part of the centrifugal force that turns with the section that it acts on; 2 reverses the sign of T′w′ in
+            the equation of a beam, −T w″ − T′ w′ with the tension T.
         gravity: (3,) m/s², in the hub's axes.
         mass: scheme of the inertia of elements.
         whole_tip: whether the lumped mass at the tip is that of a whole element instead of a half.
@@ -63,6 +68,7 @@ class Model:
     speed: float = 1.0
     softening: float = 1.0
     geometric: float = 1.0
+    following: float = 0.0
     gravity: Array = field(default_factory=lambda: np.zeros(3))
     mass: Mass = "consistent"
     whole_tip: bool = False
@@ -93,7 +99,7 @@ def solve(model: Model, speeds: Sequence[float], count: int, elements: int = ELE
             return _extrapolated(mesh, model, turned, count)
         if model.assumed:
             return _assumed(mesh, model, model.assumed, turned)
-        if model.basis or model.two_node:
+        if model.basis or model.two_node or model.following:
             return _restricted(mesh, model, turned, count)
         return list(_swept(mesh, model, turned, count))
 
@@ -125,10 +131,10 @@ def _modes(mesh: Mesh, shape: Shape, p: TreePencil, lowest: Eigen, omega: float)
 def _restricted(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> list[Modes | None]:
     """Modes in a basis (Ritz): the lowest modes at rest, about the prestressed undeformed blade, or static shapes."""
     try:
-        basis = _lowest(mesh, model.basis) if model.basis else _static(mesh)
+        basis = _static(mesh) if model.two_node else _lowest(mesh, model.basis or FOLLOWED)
     except NO_ANSWER:
         return [None] * len(speeds)
-    effects = replace(model.effects, prestretch=False) if model.basis else model.effects
+    effects = model.effects if model.two_node else replace(model.effects, prestretch=False)
     out: list[Modes | None] = []
     for omega in speeds:
         try:
@@ -136,11 +142,23 @@ def _restricted(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -
             p = state.pencil
             M, C, K = (basis @ product(a, sign, p.links, basis).T for a, sign in ((p.M, 1.0), (p.C, -1.0), (p.K, 1.0)))
             M, C, K = 0.5 * (M + M.T), 0.5 * (C - C.T), 0.5 * (K + K.T)
-            small = gyroscopic(M, C, K, min(count, len(basis)))
+            if model.following:
+                K = K - model.following * _turned_force(model, mesh, state.shape, twists(p.links, basis), omega)
+                small = damped(M, C, K, count)
+            else:
+                small = gyroscopic(M, C, K, min(count, len(basis)))
             out.append(_modes(mesh, state.shape, p, Eigen(small.frequencies, basis.T @ small.vectors), omega))
         except NO_ANSWER:
             out.append(None)
     return out
+
+
+def _turned_force(model: Model, mesh: Mesh, shape: Shape, motions: Array, omega: float) -> Array:
+    """(k, k) work on motions (k, n, d) of the centrifugal forces on the nodes, turned with each of the motions."""
+    mass = discretize(model.blade, mesh.elements, "half_end").lumps[1:, 0, 0]
+    force = mass[:, None] * omega**2 * shape.nodes[1:, :3, 3] * np.array([1.0, 1.0, 0.0])
+    local = np.einsum("nba,nb->na", shape.nodes[1:, :3, :3], force)
+    return np.einsum("ina,kna->ik", motions[..., :3], np.cross(motions[..., 3:6], local))
 
 
 def _lowest(mesh: Mesh, count: int) -> Array:
