@@ -105,7 +105,7 @@ def _refined(
             state = steady_state(mesh, omega, gravity, initial_shape)
         except SteadyStateError as error:
             if has_free_motion(linearize(mesh, undeformed(mesh), omega, gravity)):
-                raise free_root(omega) from error
+                raise free_root(omega, mesh) from error
             if previous or halvings >= _COARSE_FAILURES:
                 raise
             continue

@@ -24,6 +24,9 @@ from .lanczos import EigensolverError
 
 Array = NDArray[np.float64]
 
+ROOT_DIRECTIONS = ("x", "y", "z", "torsion", "flap", "lag")
+"""Directions in which the root of a blade may be free, in the order of ``Blade.root``; names as in a blade file."""
+
 
 @dataclass(frozen=True)
 class Options:
@@ -94,14 +97,14 @@ def solve(
         state = balance(mesh, omega, gravity, effects, initial_shape if guess is None else guess)
     except SteadyStateError as error:
         if pencil.has_free_motion(pencil.linearize(mesh, pencil.undeformed(mesh), omega, gravity, effects)):
-            raise free_root(omega) from error
+            raise free_root(omega, mesh) from error
         raise
     strain = blade_state.largest_strain(mesh, state.shape)
     try:
         lowest, basis = _lowest(state.pencil, options.count, start.basis)
     except (UnstableError, EigensolverError) as error:
         if pencil.has_free_motion(state.pencil):
-            raise free_root(omega) from error
+            raise free_root(omega, mesh) from error
         if isinstance(error, UnstableError) and strain > LARGEST_STRAIN:
             raise UnstableError(
                 f"omega: {omega:.6g} rad/s: the steady state is unstable, with an axial or shear strain of {strain:.0%}: "
@@ -150,11 +153,14 @@ def rounding(mesh: Mesh, solved: Solved, options: Options) -> Array:
     return accuracy.FLOOR + change / solved.frequencies
 
 
-def free_root(omega: float) -> UnstableError:
+def free_root(omega: float, mesh: Mesh) -> UnstableError:
     """The error to raise for a blade whose root is free in a direction without stiffness at this speed (rad/s)."""
     turning = "" if omega else "; rotation stiffens a flap hinge: give speeds above 0"
+    without_spring = [joint for joint in mesh.joints if joint.screw.any() and not joint.stiffness]
+    names = " or ".join(ROOT_DIRECTIONS[int(np.abs(joint.screw).argmax())] for joint in without_spring)
+    where = f"{names}: " if names else ""
     return UnstableError(
-        f"omega: {omega:.6g} rad/s: a free direction of the root has no stiffness: add a spring or clamp it{turning}"
+        f"omega: {omega:.6g} rad/s: {where}a free direction of the root has no stiffness: add a spring or clamp it{turning}"
     )
 
 

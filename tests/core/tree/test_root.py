@@ -75,14 +75,16 @@ def test_the_joint_turns_with_the_pitch_and_not_with_the_twist() -> None:
 
 
 def test_a_free_hinge_at_rest_is_reported() -> None:
-    with pytest.raises(UnstableError, match=r"omega: 0 rad/s.*free direction"):
+    with pytest.raises(UnstableError, match="omega: 0 rad/s: flap: a free direction"):
         mesh_modes(on(PARK, FLAP), 0.0, 10, 3)
 
 
 @pytest.mark.parametrize("elements", [40, 60, 100])
 def test_a_free_lag_hinge_on_the_axis_is_reported(elements) -> None:
     """It has no stiffness at any speed; rounding must not appear as a frequency, and no other speed is recommended."""
-    with pytest.raises(UnstableError, match=r"free direction of the root has no stiffness: add a spring or clamp it$"):
+    with pytest.raises(
+        UnstableError, match=r"lag: a free direction of the root has no stiffness: add a spring or clamp it$"
+    ):
         mesh_modes(replace(on(PARK, LAG), hub_radius=0.0), 10.0, elements, 6)
 
 
