@@ -102,7 +102,7 @@ class AssumedModes(ClosedForm):
     def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest bending modes with ``elements`` polynomials in each interval (see ``protocol.interface``)."""
         parts = [
-            part(bending.shape, *stationary_modes(bending.mass, bending.stiffness(omega)))
+            part(bending.shape, *stationary_modes(bending.mass, bending.stiffness(omega), count))
             for bending in bendings(blade, terms(blade, elements))
         ]
         return union(parts, omega, elements, count)

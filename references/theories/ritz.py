@@ -55,15 +55,16 @@ def shape_of(fields: Sequence[tuple[int, Array]]) -> Array:
     return out
 
 
-def stationary_modes(M: Array, K: Array) -> tuple[Array, Array]:
-    """Frequencies (n,), ascending, and shapes (n, n) of ``M q̈ + K q = 0``; in inverse form, which is most accurate for
-    the lowest.
+def stationary_modes(M: Array, K: Array, count: int) -> tuple[Array, Array]:
+    """The ``count`` lowest modes of ``M q̈ + K q = 0``: frequencies (m,), ascending, and shapes (n, m).
+
+    The problem is solved in inverse form, which is most accurate for the lowest.
 
     Raises:
         CodeError: if K is not positive definite.
     """
     try:
-        inverse, q = scipy.linalg.eigh(M, K)
+        inverse, q = scipy.linalg.eigh(M, K, subset_by_index=[max(len(M) - count, 0), len(M) - 1])
     except np.linalg.LinAlgError as error:
         raise CodeError(
             f"stiffness: not positive definite ({error}): no stable steady state; lower the rotor speed"

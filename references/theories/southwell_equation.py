@@ -31,22 +31,21 @@ from .straight_beam import ClosedForm, line, refusal, tension, terms
 Array = NDArray[np.float64]
 
 
-def cable(blade: Blade, planes: tuple[int, ...], terms: int) -> Array:
-    """Eigenvalues β (n,) of B, ascending: squared frequencies over Ω² of the blade without bending stiffness.
+def cable(blade: Blade, planes: tuple[int, ...], terms: int, count: int) -> Array:
+    """The lowest ``count`` eigenvalues β of B: squared frequencies over Ω² of the blade without bending stiffness.
 
     In the plane of rotation they are lower by 1 than out of it. Uniform, δ = 0: j (2j − 1) out of the plane.
     """
     at = line(blade, terms)
     w, slope, _ = pinned_functions(at.ends, terms, at.s)
-    flapwise = stationary_modes(integral(at.mass, w), integral(at.weight * tension(blade, at.s), slope))[0] ** 2
-    return np.sort(np.concatenate([flapwise - 1.0 if plane == Y else flapwise for plane in planes]))
+    flapwise = stationary_modes(integral(at.mass, w), integral(at.weight * tension(blade, at.s), slope), count)[0] ** 2
+    return np.sort(np.concatenate([flapwise - 1.0 if plane == Y else flapwise for plane in planes]))[:count]
 
 
 def squared(bending: Bending, beta: Array, omega: float, count: int) -> tuple[Array, Array, Array, Array]:
     """Southwell's ω² (m,), its lower and upper bounds (m,), and the non-rotating modes (n, m)."""
-    frequencies, q = stationary_modes(bending.mass, bending.elastic)
-    alpha = frequencies[:count] ** 2
-    phi = q[:, :count] * frequencies[:count]  # φᵀ M φ = 1
+    frequencies, q = stationary_modes(bending.mass, bending.elastic, count)
+    alpha, phi = frequencies**2, q * frequencies  # φᵀ M φ = 1
     ritz = np.diag(alpha) + omega**2 * (phi.T @ bending.centrifugal @ phi)
     m = len(alpha)
     upper = np.array([np.linalg.eigvalsh(ritz[:k, :k])[-1] for k in range(1, m + 1)])
@@ -73,7 +72,7 @@ class SouthwellEquation(ClosedForm):
         parts = []
         number = terms(blade, elements)
         for bending in bendings(blade, number):
-            beta = cable(blade, bending.planes, number)
+            beta = cable(blade, bending.planes, number, count)
             value, lower, upper, phi = squared(bending, beta, omega, count)
             frequency, low, high = np.sqrt(value), np.sqrt(lower), np.sqrt(upper)
             reach = np.maximum(high - frequency, frequency - low) / frequency

@@ -73,7 +73,7 @@ class YooShin(ClosedForm):
         _, flap = bendings(blade, number)
         parts = (
             part(shape, *coupled_modes(M, C, K, count)),
-            part(flap.shape, *stationary_modes(flap.mass, flap.stiffness(omega))),
+            part(flap.shape, *stationary_modes(flap.mass, flap.stiffness(omega), count)),
         )
         return union(parts, omega, elements, count)
 
