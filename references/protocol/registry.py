@@ -7,6 +7,7 @@
 import os
 import sys
 from difflib import get_close_matches
+from functools import lru_cache
 from importlib import import_module
 from importlib.metadata import entry_points
 from typing import Any, TypedDict
@@ -41,10 +42,24 @@ def registered() -> dict[str, str]:
     Raises:
         UnknownCodeError: if the codes of this package are missing: its installation is older than its sources.
     """
+    return dict(_registered(tuple((folder, _changed(folder)) for folder in sys.path)))
+
+
+@lru_cache(maxsize=1)
+def _registered(_: tuple[tuple[str, int], ...]) -> dict[str, str]:
+    """``registered`` while the search path and its folders are as they are: a run asks thousands of times."""
     entries = sorted(entry_points(group=GROUP), key=lambda entry: bundled(entry.value))
     if not entries or not bundled(entries[-1].value):
         raise UnknownCodeError("codes: southwell's own are not registered: run make, or pip install --editable .")
     return dict(sorted({entry.name: entry.value for entry in entries}.items()))
+
+
+def _changed(folder: str) -> int:
+    """When a package was last installed into a folder or removed from it, ns since 1970; 0 if there is no such folder."""
+    try:
+        return os.stat(folder or os.curdir).st_mtime_ns
+    except OSError:
+        return 0
 
 
 def bundled(path: str) -> bool:
