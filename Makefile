@@ -12,7 +12,8 @@ KERNELS := $(shell find core -name '*.hpp' -o -name '*.cpp')
 # one thread per process: runs already use one process per core
 export OMP_NUM_THREADS := 1
 export OPENBLAS_NUM_THREADS := 1
-# cached bytecode spares each of the many processes a compilation of the package
+# cached bytecode spares each of the many processes a compilation of the package, and of the modules of libraries that are
+# imported; pip would compile all of them
 unexport PYTHONDONTWRITEBYTECODE
 
 .PHONY: verify test test-slow test-all coverage lint style types bench readme docs clean
@@ -66,7 +67,7 @@ docs: $(INSTALLED)
 $(INSTALLED): pyproject.toml setup.py $(KERNELS)
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[codes,readers,dev]'
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[codes,readers,dev]'
 	mkdir -p $(HERE) && ln -sfn ../.. $(HERE)/southwell
 	touch $@
 
