@@ -93,6 +93,16 @@ def test_a_release_is_published_only_after_the_matrix_and_the_wheels() -> None:
     assert "cp311-* cp312-* cp313-*" in PROJECT["tool"]["cibuildwheel"]["build"]
 
 
+def test_a_job_that_does_not_use_git_keeps_no_credentials() -> None:
+    for path in sorted((ROOT / ".github" / "workflows").glob("*.yml")):
+        for name, job in yaml.safe_load(path.read_text(encoding="utf-8"))["jobs"].items():
+            steps = job.get("steps", [])
+            git = any(re.search(r"\bgit (fetch|-C)", step.get("run", "")) for step in steps)
+            for step in (step for step in steps if step.get("uses", "").startswith("actions/checkout@")):
+                kept = step.get("with", {}).get("persist-credentials", True)
+                assert kept == git, f"{path.name}: {name}"
+
+
 def test_issue_forms_ask_for_what_a_discrepancy_needs() -> None:
     forms = {p.stem: yaml.safe_load(p.read_text(encoding="utf-8")) for p in FORMS.glob("*.yml") if p.stem != "config"}
     assert set(forms) == {"bug", "frequency-discrepancy"}

@@ -39,12 +39,14 @@ class Sheet:
         head: headings of the columns.
         rows: fields as printed; one that begins with ``TOO_NEAR`` is highlighted.
         note: explanation below the table; may be empty.
+        keys: number of first columns that name a row, repeated where the table is continued.
     """
 
     title: str
     head: tuple[str, ...]
     rows: tuple[tuple[str, ...], ...]
     note: str = ""
+    keys: int = 1
 
 
 def sheets(diagram: Campbell, units: Units) -> tuple[Sheet, ...]:
@@ -219,7 +221,7 @@ def _doubts(diagram: Campbell, units: Units) -> Sheet:
 
 def terminal(sheet: Sheet, width: int) -> Group:
     """The table for a console of ``width`` characters, with violated margins in red; continued below if it is wider."""
-    parts = list(table_columns.parts(sheet.head, sheet.rows, width))
+    parts = list(table_columns.parts(sheet.head, sheet.rows, width, sheet.keys))
     note = [Text(f"{sheet.note}\n", style="dim italic")] if sheet.note else []
     return Group(*(_part(sheet, part, part is parts[0]) for part in parts), *note)
 

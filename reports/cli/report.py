@@ -78,4 +78,4 @@ def show_tables(run: Run) -> None:
     for line in diagnoses.lines(run):
         console.print(f"Why it differs: {line}", markup=False, soft_wrap=True)
     if run.controls:
-        console.print(terminal.controls(run))
+        console.print(terminal.controls(run, console.width))

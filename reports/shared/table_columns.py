@@ -1,6 +1,6 @@
 """Columns of tables in the terminal: words are wrapped, numbers and words are never broken.
 
-A table whose columns do not fit is continued below, with its first column repeated.
+A table whose columns do not fit is continued below, with the columns repeated that name a row, by default the first.
 """
 
 import re
@@ -34,10 +34,11 @@ def fitting(widths: Sequence[int], width: int) -> Iterator[list[int]]:
         yield part
 
 
-def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int) -> Iterator[list[int]]:
-    """Numbers of the columns of each part of a table that fits into ``width`` characters; all begin with the first column."""
-    first, *others = (_least(h, [row[k] for row in rows]) + BETWEEN for k, h in enumerate(head))
-    yield from ([0, *(k + 1 for k in part)] for part in (fitting(others, width - first) if others else [[]]))
+def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, keys: int = 1) -> Iterator[list[int]]:
+    """Numbers of the columns of each part of a table that fits into ``width`` characters; all begin with the ``keys`` first."""
+    widths = [_least(h, [row[k] for row in rows]) + BETWEEN for k, h in enumerate(head)]
+    others, space = widths[keys:], width - sum(widths[:keys])
+    yield from ([*range(keys), *(k + keys for k in part)] for part in (fitting(others, space) if others else [[]]))
 
 
 def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title: str | None = None) -> Iterator[Table]:

@@ -34,7 +34,7 @@ COMMAND = (
 )
 """The command in the README, to be run in a checkout."""
 
-LINES = 10
+LINES = 12
 """Number of lines of its output in the README."""
 
 SHOWN = {

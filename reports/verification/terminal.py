@@ -6,6 +6,7 @@ from collections.abc import Iterator, Sequence
 from rich import box
 from rich.markup import escape
 from rich.table import Table
+from rich.text import Text
 
 from ...cases.campbell.tracked import TrackedMode
 from ...cases.judge.results import Cell, Run, Verdict
@@ -64,21 +65,25 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
         yield out
 
 
+WIDE = 100
+"""Characters of a terminal that shows, for each seeded fault, the cell that detected it; the report has it always."""
+
+
 def legend() -> str:
     """The legend of ``matrix``."""
     signs = ", ".join(f"{sign} {verdict}" for verdict, sign in SYMBOL.items())
     return f"largest difference from Southwell's own solver in % (2e-14: relative; 1.4 of 2: target of 2 %); {signs}"
 
 
-def controls(run: Run) -> Table:
-    """The table of negative controls, one row per seeded fault."""
+def controls(run: Run, width: int) -> Table:
+    """The table of negative controls, one row per seeded fault; what detected it, if ``width`` characters are enough."""
     out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
-    for head in ("seeded fault", "in", "outcome", "largest difference", "detected by"):
+    for head in ("seeded fault", "in", "outcome", "largest difference", "detected by")[: 5 if width >= WIDE else 4]:
         out.add_column(head, overflow="fold")
     for control, row in zip(run.controls, faults.overview(run), strict=True):
         first = control.detected_by[0] if control.detected_by else ""
         cells = (row["fault"], row["in"], row["outcome"], row["largest difference"], first)
-        out.add_row(*map(escape, cells), style="bold red" if control.missed else "")
+        out.add_row(*map(escape, cells[: len(out.columns)]), style="bold red" if control.missed else "")
     return out
 
 
@@ -126,7 +131,8 @@ def frequencies(modes: Sequence[TrackedMode], title: str, units: Units, width: i
 
 
 def _frequencies(modes: Sequence[TrackedMode], title: str, units: Units, speeds: Sequence[float]) -> Table:
-    out = Table(box=box.SIMPLE_HEAD, title=title or None, title_justify="left", title_style="bold")
+    heading = Text(title, style="bold", no_wrap=True, overflow="ignore")
+    out = Table(box=box.SIMPLE_HEAD, title=heading if title else None, title_justify="left")
     out.add_column(units.frequency_label, no_wrap=True)
     for omega in speeds:
         out.add_column(units.at(omega), justify="right", no_wrap=True)

@@ -82,9 +82,9 @@ def command(
     An OpenFAST .fst or HAWC2 .htc file with a tower and at least three blades gives the modes of the whole turbine in the
     ground's frame.
 
-    Prints tables of the modes, of the margins to n per revolution (nP), of resonances, and of crossings and veerings. Writes
-    campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds are inserted where two modes
-    come close to each other, and the modes are solved at each crossing of nP.
+    Prints the verdict on the margins, then tables of the modes, of the margins to n per revolution (nP), of resonances, and of
+    crossings and veerings. Writes campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds
+    are inserted where two modes come close to each other, and the modes are solved at each crossing of nP.
 
     Parameters
     ----------
@@ -312,6 +312,9 @@ def _show(
     diagram: Campbell, units: Units, subject: Subject, extra: Sequence[Sheet], doubts: Sequence[str] = ()
 ) -> None:
     console = output()
+    line = tables.verdict(diagram, units)
+    console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
+    console.print()
     for sheet in (*tables.sheets(diagram, units), *extra):
         console.print(tables.terminal(sheet, console.width))
         console.print()
@@ -320,5 +323,3 @@ def _show(
     not_used.show(subject.unused, console)
     for line in (*doubts, *tables.notes(diagram, units)):
         console.print(line, style="yellow", markup=False, soft_wrap=True)
-    line = tables.verdict(diagram, units)
-    console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)

@@ -28,6 +28,9 @@ from ..errors import UsageError
 
 SUFFIX = ".jsonl"
 
+ROUNDING = 1e-12
+"""Relative standard deviation that is rounding: no sampled property acts on the mode."""
+
 
 def command(
     study: Path,
@@ -115,7 +118,19 @@ def _sheet(path: Path, study: Study) -> Sheet:
     head = ("blade", "speed", "mode", "name", "samples", f"mean, {units.frequency}", "std. deviation", "5 %", "95 %")
     rows = []
     for blade, omega, mode, name, samples, *numbers in spreads(read(path)).itertuples(index=False):
-        shown = (f"{value * units.frequencies:.6g}" for value in numbers)
-        rows.append((blade, units.at(omega), str(mode), name, str(samples), *shown))
+        mean, deviation, *limits = (value * units.frequencies for value in numbers)
+        spread = f"{deviation:.3g}" if deviation > ROUNDING * mean else "0"
+        rows.append(
+            (
+                blade,
+                units.at(omega),
+                str(mode),
+                name,
+                str(samples),
+                f"{mean:.6g}",
+                spread,
+                *(f"{f:.6g}" for f in limits),
+            )
+        )
     note = "A mode is a number in the order of each sample; its name is the most frequent one."
-    return Sheet("Frequencies over the samples", head, tuple(rows), note)
+    return Sheet("Frequencies over the samples", head, tuple(rows), note, keys=4)

@@ -12,10 +12,12 @@ from southwell.cases.campbell.tracked import TrackedMode
 from southwell.cases.store import results_file
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
+from southwell.reports.campbell import tables
 from southwell.reports.cli.blade import show
 from southwell.reports.shared.units import RPM
 from southwell.reports.verification import terminal
 
+from ...support import samples
 from .test_cli import southwell
 
 DECK = Path(__file__).parents[3] / "examples" / "nrel-5mw-blade.dat"
@@ -134,13 +136,37 @@ def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
     ]
     modes = [TrackedMode(f"edgewise {k}", tuple(row for row in rows if row.mode == k)) for k in (1, 2)]
     console = Console(width=80, file=StringIO(), highlight=False)
-    for table in terminal.frequencies(modes, "a blade", RPM, 80):
+    title = "a blade: 257 stations, accuracy 1e-06"
+    for table in terminal.frequencies(modes, title, RPM, 80):
         console.print(table)
     shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert title in shown, "a title wider than its table is not wrapped"
     assert "…" not in shown
     assert max(map(len, shown.splitlines())) <= 80
     printed = [float(x) for line in shown.splitlines() if line.startswith("  edge") for x in line.split()[2:-1]]
     assert sorted(printed) == pytest.approx(sorted(r.frequency * RPM.frequencies for r in rows))
+
+
+def test_a_table_is_continued_with_every_column_that_names_a_row() -> None:
+    """Six rows of one blade used to be continued with its name alone."""
+    head = ("blade", "speed", "mode", "name", "samples", "mean, Hz", "std. deviation", "5 %", "95 %")
+    rows = tuple(("a-long-name", f"{30 * k} rpm", "1", "flapwise 1", "8", *["1.234567"] * 4) for k in range(3))
+    console = Console(width=60, file=StringIO(), highlight=False)
+    console.print(tables.terminal(tables.Sheet("Frequencies over the samples", head, rows, keys=4), 60))
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert [shown.count(f" {30 * k} rpm") for k in range(3)] == 3 * [shown.count("blade")]
+    assert shown.count("blade") > 1
+    assert shown.count("1.234567") == 12
+    assert max(map(len, shown.splitlines())) <= 60
+
+
+def test_a_narrow_terminal_has_no_column_of_broken_words_for_faults() -> None:
+    for width, shown in ((80, False), (120, True)):
+        console = Console(width=width, file=StringIO(), highlight=False)
+        console.print(terminal.controls(samples.run(), width))
+        text = console.file.getvalue()  # type: ignore[attr-defined]
+        assert ("detected by" in text) == shown
+        assert "largest difference" in text
 
 
 def test_stations_are_whole_in_eighty_columns() -> None:

@@ -100,6 +100,9 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
     line = f"campbell {beam} --rpm 0:200:50 --modes 3 --elements 8 --operating 50:150 --per-rev 1,2,9 --margin 0.05"
     status, shown, err = southwell(f"{line} -o {out}", capsys)
     assert (status, err) == (0, "")
+    assert "At 50 to 150 rpm" in shown.splitlines()[0] or "at 50 to 150 rpm" in shown.splitlines()[0], (
+        "the verdict is first"
+    )
     blade = library.load(str(beam)).variants[0].blade
     solved = modes(blade, 200 * np.pi / 30, 8, 3)
     row = next(text for text in shown.splitlines() if "flapwise 1" in text and " % flapwise" in text)
