@@ -28,7 +28,7 @@ def listing() -> int:
     opened = _opened()
     table = Table(box=box.SIMPLE_HEAD, caption=str(store.path()))
     for head, side in (("code", "left"), ("answers", "right"), ("MB", "right"), ("first", "left"), ("last", "left")):
-        table.add_column(head, justify=side)  # pyright: ignore[reportArgumentType]
+        table.add_column(head, justify=side, overflow="fold")  # pyright: ignore[reportArgumentType]
     for kept in opened.kept():
         first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when)) for when in (kept.first, kept.last))
         table.add_row(kept.label, str(kept.count), f"{kept.size / 1e6:.1f}", first, last)

@@ -52,11 +52,29 @@ def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title
             padding=(0, 1, 0, 0),
             pad_edge=False,
         )
-        for k in part:
-            add_column(out, head[k], [row[k] for row in rows])
+        columns = [[row[k] for row in rows] for k in part]
+        least = [_least(head[k], fields) for k, fields in zip(part, columns, strict=True)]
+        most = [max(map(len, (head[k], *fields))) for k, fields in zip(part, columns, strict=True)]
+        widths = shares(least, most, width - BETWEEN * len(part))
+        for k, fields, own in zip(part, columns, widths, strict=True):
+            add_column(out, head[k], fields, width=own)
         for row in rows:
             out.add_row(*(escape(row[k]) for k in part))
         yield out
+
+
+def shares(least: Sequence[int], most: Sequence[int], space: int) -> list[int]:
+    """Widths from ``least`` to ``most`` that share ``space``; columns that lack little are widened first.
+
+    Rich itself narrows a column below its least width, and cuts what then exceeds the terminal.
+    """
+    widths, spare = list(least), space - sum(least)
+    order = sorted(range(len(least)), key=lambda k: most[k] - least[k])
+    for count, k in zip(range(len(order), 0, -1), order, strict=True):
+        more = max(0, min(most[k] - least[k], spare // count))
+        widths[k] += more
+        spare -= more
+    return widths
 
 
 def _least(head: str, fields: Sequence[str]) -> int:
@@ -69,7 +87,13 @@ def _numbers(fields: Sequence[str]) -> bool:
     return all(NUMBER.fullmatch(field) for field in fields)
 
 
-def add_column(table: Table, head: str, fields: Sequence[str], justify: Literal["left", "right"] = "left") -> None:
+def add_column(
+    table: Table,
+    head: str,
+    fields: Sequence[str],
+    justify: Literal["left", "right"] = "left",
+    width: int | None = None,
+) -> None:
     """Add a column to a table; if all its fields are numbers, only its head is wrapped.
 
     Args:
@@ -77,9 +101,10 @@ def add_column(table: Table, head: str, fields: Sequence[str], justify: Literal[
         head: of the column.
         fields: text of all its rows.
         justify: side at which fields are aligned.
+        width: of a column with words; by default what Rich gives it.
     """
     least = _least(head, fields)
     if _numbers(fields):
         table.add_column(fill(head, least, break_long_words=False), justify=justify, no_wrap=True)
     else:
-        table.add_column(head, justify=justify, overflow="fold", min_width=least)
+        table.add_column(head, justify=justify, overflow="fold", min_width=least, width=width)

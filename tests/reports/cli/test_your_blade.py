@@ -14,6 +14,7 @@ from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
 from southwell.reports.campbell import tables
 from southwell.reports.cli.blade import show
+from southwell.reports.shared import table_columns
 from southwell.reports.shared.units import RPM
 from southwell.reports.verification import terminal
 
@@ -158,6 +159,21 @@ def test_a_table_is_continued_with_every_column_that_names_a_row() -> None:
     assert shown.count("blade") > 1
     assert shown.count("1.234567") == 12
     assert max(map(len, shown.splitlines())) <= 60
+
+
+@pytest.mark.parametrize("width", [64, 72, 80, 96, 120])
+def test_no_column_of_words_is_cut(width: int) -> None:
+    """The last column read `noth`: Rich narrowed another one below its least width."""
+    head = ("case", "code", "answers", "speeds", "modes", "now")
+    speeds = ", ".join(f"{2 * k} rad/s" for k in range(7))
+    codes = ("exact-beam", "paper's equations, literally", "wright1982/four-decimals")
+    rows = [("wright-flapwise", code, "21", speeds, "1, 2, 3", "nothing") for code in codes]
+    console = Console(width=width, file=StringIO(), highlight=False)
+    for table in table_columns.tables(head, rows, width):
+        console.print(table)
+    shown = console.file.getvalue()  # type: ignore[attr-defined]
+    assert shown.count("nothing") == 3
+    assert max(len(line.rstrip()) for line in shown.splitlines()) < width
 
 
 def test_a_narrow_terminal_has_no_column_of_broken_words_for_faults() -> None:
