@@ -134,7 +134,7 @@ READER: tuple[tuple[str, str, Callable[[Turbine], Turbine]], ...] = (
 
 
 def reading(subject: TurbineSubject) -> list[Control]:
-    """Run mistakes of reading on OpenFAST's files of a turbine and of its blade; empty for other files."""
+    """Run mistakes of reading on a turbine's files (.fst, .htc) and on its blade's; empty for other files."""
     path = subject.deck
     if path is None:
         return []
@@ -142,14 +142,14 @@ def reading(subject: TurbineSubject) -> list[Control]:
     file = readers.BladeFile(path, blade.blade, blade.source, subject.mount)
     fastest = max(subject.points)
     out = own_reading.of_file(subject.name, fastest, file)
-    right = read_again(subject.name, subject.turbine, path)
+    right = read_again(subject.name, subject.turbine, path, subject.mount)
     failing_before = {row.part for row in right if row.verdict != "pass"}
     for name, what, alter in READER:
         control = Control(name, "reader", what, "", subject.name, fastest, ())
         if absent := [row.reason for row in right if row.verdict == "not run"]:
             out.append(replace(control, needs=absent[0]))
             continue
-        rows = read_again(subject.name, alter(subject.turbine), path)
+        rows = read_again(subject.name, alter(subject.turbine), path, subject.mount)
         parts = [row.part for row in rows if row.verdict == "fail" and row.part not in failing_before]
         detected = tuple(f"{subject.name}, second reading, {part}: fail" for part in parts)
         same = not detected and _alike(subject.turbine, alter(subject.turbine))

@@ -79,8 +79,8 @@ class TurbineSubject(NotABlade):
 
     @property
     def deck(self) -> Path | None:
-        """OpenFAST's primary file, which there is a second reader of; None for other files."""
-        return next((file for file in self.source.files if file.suffix.lower() == ".fst"), None)
+        """OpenFAST's primary file or HAWC2's htc, which there is a second reader of; None for other files."""
+        return next((file for file in self.source.files if file.suffix.lower() in (".fst", ".htc")), None)
 
     @property
     def cells(self) -> int:
@@ -146,7 +146,7 @@ class TurbineSubject(NotABlade):
         return partial(references, self.turbine, self.points, self.modes)
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
-        """See ``Subject``; a second reading of OpenFAST's files."""
+        """See ``Subject``; a second reading of OpenFAST's or HAWC2's files."""
         if self.deck is None:
             return NOT_CHECKED
         rows, weighed = self.second_reading(self.deck)
@@ -156,11 +156,11 @@ class TurbineSubject(NotABlade):
         return PropertyChecks(rows, turbine_weights.weighings(self.name, self.turbine, weighed, codes, limits))
 
     def second_reading(self, deck: Path) -> tuple[list[PropertyCheck], Weighed | None]:
-        """The rows of a second reading of OpenFAST's files, and what the turbine weighs by it; None if they are not read."""
+        """The rows of a second reading of the turbine's files, and what the turbine weighs by it; None if they are not read."""
         blade = readers.reading(deck, self.mount)
         file = readers.BladeFile(deck, blade.blade, blade.source, self.mount)
         of_blade, stations = of_reading(self.name, file, blade.blade)
-        rows = [*read_again(self.name, self.turbine, deck), *of_blade]
+        rows = [*read_again(self.name, self.turbine, deck, self.mount), *of_blade]
         return rows, turbine_weights.expected(deck, blade.blade, stations)
 
 

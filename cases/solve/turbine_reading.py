@@ -1,4 +1,4 @@
-"""Compare a turbine with a second reading of its primary file: tower, tower top and drivetrain, quantity by quantity."""
+"""Compare a turbine with a second reading of its deck: tower, tower top and drivetrain, quantity by quantity."""
 
 from pathlib import Path
 
@@ -6,16 +6,20 @@ import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z
 from ...core.turbine.turbine import Turbine
-from ...references.readers import NotReadError, openfast_turbine
+from ...references.readers import NotReadError, hawc2_turbine, openfast_turbine
+from ..input.readers.source import Mount
 from ..judge.results import PropertyCheck
 from ..reading.comparison import TARGET
 
 SMALL = 1e-9
 """Relative to the largest quantity of the same unit: below it a difference is rounding."""
 
+OVERRIDDEN = {"hub radius": "hub_radius", "cone of the blades": "precone"}
+"""Quantities that a field of ``Mount`` overrides."""
+
 
 def quantities(turbine: Turbine) -> dict[str, float]:
-    """The quantities of ``references.readers.openfast_turbine`` as the turbine has them; x up, y to starboard, z downwind."""
+    """The quantities of the second readers as the turbine has them; x up, y to starboard, z downwind."""
     tower, nacelle, shaft, drive = turbine.tower, turbine.nacelle, turbine.shaft, turbine.drivetrain
 
     def along(values: np.ndarray) -> float:
@@ -39,13 +43,15 @@ def quantities(turbine: Turbine) -> dict[str, float]:
         "hub's inertia about the shaft": float(turbine.hub[5, 5]),
         "generator's inertia on the rotor's side": drive.generator * drive.gear_ratio**2,
         "stiffness of the shaft": drive.stiffness,
+        "hub radius": turbine.blade.hub_radius,
+        "cone of the blades": turbine.blade.precone,
     }
 
 
-def read_again(case: str, turbine: Turbine, path: Path) -> list[PropertyCheck]:
-    """The rows of a second reading of a turbine's primary file; one that says why if there is none."""
+def read_again(case: str, turbine: Turbine, path: Path, mount: Mount | None = None) -> list[PropertyCheck]:
+    """The rows of a second reading of a turbine's .fst or .htc, without what ``mount`` overrides; one that says why if none."""
     try:
-        second, reader = openfast_turbine.read(path)
+        second, reader = (hawc2_turbine if path.suffix.lower() == ".htc" else openfast_turbine).read(path)
     except NotReadError as error:
         return [
             PropertyCheck(case, "second reader", "", "reading", "", None, None, "", None, TARGET, "not run", str(error))
@@ -56,7 +62,10 @@ def read_again(case: str, turbine: Turbine, path: Path) -> list[PropertyCheck]:
     for value, unit in second.values():
         sizes[unit] = max(sizes.get(unit, 0.0), abs(value))
     rows = []
+    overridden = {name for name, field in OVERRIDDEN.items() if mount and getattr(mount, field) is not None}
     for what, (value, unit) in second.items():
+        if what in overridden:
+            continue
         size = max(abs(own[what]), abs(value), SMALL * sizes[unit], np.finfo(float).tiny)
         difference = (own[what] - value) / size
         agrees = abs(difference) <= TARGET

@@ -21,10 +21,10 @@ from ...references.protocol.description import Description
 from ...references.protocol.fingerprint import Fingerprint, of_turbine
 from ...references.protocol.process import Limits
 from ...references.protocol.worker import fingerprints
-from ...references.readers import Stations
+from ...references.readers import Stations, hawc2_turbine, turbine_mass
 from ...references.readers.quadrature import Mounted
 from ...references.readers.stations import NotReadError
-from ...references.readers.turbine_mass import Weighed, weigh
+from ...references.readers.turbine_mass import Weighed
 from ..judge.results import PropertyCheck
 from .properties import CORE, unweighed
 
@@ -36,7 +36,8 @@ def expected(path: Path, blade: Blade, stations: Stations) -> Weighed | None:
     """What the second reading of the files weighs; None if they are not read."""
     mounted = Mounted(stations, blade.hub_radius, blade.precone, blade.pitch, blade.kinks)
     try:
-        return weigh(path, mounted, blade.tip_mass)
+        module = hawc2_turbine if path.suffix.lower() == ".htc" else turbine_mass
+        return module.weigh(path, mounted, blade.tip_mass)
     except NotReadError:
         return None
 

@@ -39,7 +39,7 @@ def read(path: Path, asked: Asked) -> Stations:
     if body is not None:
         table_input = body.timoschenko_input
         subset = subset or (tuple(int(v) for v in table_input.set[:2]) if "set" in table_input.keys() else None)  # noqa: SIM118
-        path = _beside(htc, str(table_input.filename[0])) if htc is not None and path == htc else path
+        path = beside(htc, str(table_input.filename[0])) if htc is not None and path == htc else path
     file = StFile(str(path))
     subset = subset or next((a, b) for a, data in file.main_data_sets.items() for b in data)
     rows = file.main_data_sets[subset[0]][subset[1]]
@@ -60,7 +60,12 @@ def _blade(htc: Any) -> Any:
     raise NotReadError("wetb finds no main_body whose name begins with blade")
 
 
-def _beside(htc: Path, name: str) -> Path:
+def beside(htc: Path, name: str) -> Path:
+    """The file that an htc names, relative to its folder or the one above.
+
+    Raises:
+        NotReadError: it is not there.
+    """
     relative = Path(name.replace("\\", "/"))
     for candidate in (htc.parent / relative, htc.parent.parent / relative, htc.parent / relative.name):
         if candidate.is_file():
