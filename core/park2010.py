@@ -50,13 +50,13 @@ def cut_joints(t: Tree) -> Array:
     return rows[:, :, :-1].reshape(6 * len(t.cuts), 6 * len(t.inertia))
 
 
-def motions(t: Tree, J: Array, which: list[int]) -> Array:
-    """Φᴹ_Z (..., m, 6 b): the rates of the coordinates ``which`` from the velocities of the bodies that they join."""
-    rows = np.zeros((*J.shape[:-2], len(which), len(t.inertia) + 1, 6), complex)
+def motions(t: Tree, J: Array, chosen: list[int]) -> Array:
+    """Φᴹ_Z (..., m, 6 b): the rates of the coordinates ``chosen`` from the velocities of the bodies that they join."""
+    rows = np.zeros((*J.shape[:-2], len(chosen), len(t.inertia) + 1, 6), complex)
     for inboard, outboard, own, _, _ in t.branches:
-        for k in set(own) & set(which):
-            rows[..., which.index(k), outboard, :] = cs.left_inverse(J[..., own])[..., own.index(k), :]
-            rows[..., which.index(k), inboard, :] = -rows[..., which.index(k), outboard, :]
+        for k in set(own) & set(chosen):
+            rows[..., chosen.index(k), outboard, :] = cs.left_inverse(J[..., own])[..., own.index(k), :]
+            rows[..., chosen.index(k), inboard, :] = -rows[..., chosen.index(k), outboard, :]
     return rows[..., :-1, :].reshape(*rows.shape[:-2], 6 * len(t.inertia))
 
 

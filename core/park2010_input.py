@@ -140,21 +140,21 @@ def tree(mechanism: Mechanism) -> Tree:
 
 
 def _elements(mechanism: Mechanism, bodies: dict[str, int], measure: Measure) -> Elements | None:
-    some = [x for x in mechanism.beams if x.beams.law.measure == measure]
-    if not some:
+    beams = [x for x in mechanism.beams if x.beams.law.measure == measure]
+    if not beams:
         return None
-    for x in some:
+    for x in beams:
         if x.beams.internal_count:
             raise MechanismError(f"beam {x.body_a!r}–{x.body_b!r}: it has mass inside: lump the mass at its ends")
     return Elements(
-        law=joined([x.beams.law for x in some]),
-        stiffness=np.concatenate([x.beams.stiffness for x in some]),
-        preload=np.concatenate([x.beams.preload for x in some]),
-        damping=np.array([x.damping for x in some]),
-        a=np.array([bodies[x.body_a] for x in some]),
-        b=np.array([bodies[x.body_b] for x in some]),
-        at_a=np.array([x.at_a for x in some]),
-        at_b=np.array([x.at_b for x in some]),
+        law=joined([x.beams.law for x in beams]),
+        stiffness=np.concatenate([x.beams.stiffness for x in beams]),
+        preload=np.concatenate([x.beams.preload for x in beams]),
+        damping=np.array([x.damping for x in beams]),
+        a=np.array([bodies[x.body_a] for x in beams]),
+        b=np.array([bodies[x.body_b] for x in beams]),
+        at_a=np.array([x.at_a for x in beams]),
+        at_b=np.array([x.at_b for x in beams]),
     )
 
 

@@ -87,11 +87,11 @@ def families(energy_fractions: Array) -> tuple[str, ...]:
 
 def numbered(names: Sequence[str]) -> tuple[str, ...]:
     """Number modes, given by family in order of frequency, within their family: ``flapwise 1``, ``edgewise 1``."""
-    seen: Counter[str] = Counter()
+    occurrences: Counter[str] = Counter()
     out = []
     for name in names:
-        seen[name] += 1
-        out.append(f"{name} {seen[name]}")
+        occurrences[name] += 1
+        out.append(f"{name} {occurrences[name]}")
     return tuple(out)
 
 

@@ -170,11 +170,11 @@ def _line(solved: Sequence[TurbineModes], places: Sequence[int], doubt: Array) -
 
 def _numbered(lines: Sequence[ModeLine]) -> tuple[ModeLine, ...]:
     """The lines, of which those of equal name are numbered from the second on."""
-    seen: Counter[str] = Counter()
+    occurrences: Counter[str] = Counter()
     out = []
     for line in lines:
-        seen[line.name] += 1
-        name = line.name if seen[line.name] == 1 else f"{line.name} ({seen[line.name]})"
+        occurrences[line.name] += 1
+        name = line.name if occurrences[line.name] == 1 else f"{line.name} ({occurrences[line.name]})"
         out.append(replace(line, name=name))
     return tuple(out)
 

@@ -94,10 +94,10 @@ def unlisted(tracks: Tracks, per_rev: Sequence[int]) -> tuple[Unlisted, ...]:
     No solver's mode is missing, so the number of modes below n Ω is exact at each solved speed.
     """
     out = []
-    here = tracks.place >= 0
+    present = tracks.place >= 0
     for n in per_rev:
-        below = here & (np.nan_to_num(tracks.frequencies, nan=np.inf) < n * tracks.omega[:, None])
-        both = here[1:] & here[:-1]
+        below = present & (np.nan_to_num(tracks.frequencies, nan=np.inf) < n * tracks.omega[:, None])
+        both = present[1:] & present[:-1]
         lost = (below[1:] & ~both).sum(1) - (below[:-1] & ~both).sum(1)
         for k in np.flatnonzero(lost).tolist():
             out.append(Unlisted(n, (float(tracks.omega[k]), float(tracks.omega[k + 1])), int(lost[k])))

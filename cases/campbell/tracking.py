@@ -189,23 +189,23 @@ def _strung(
     tracks = len(owner[0])
     doubts: list[Doubt] = []
     for k, link in enumerate(links):
-        here = [-1] * len(points[k + 1].frequencies)
+        line_at = [-1] * len(points[k + 1].frequencies)
         after = dict(zip(link.rows.tolist(), link.columns.tolist(), strict=True))
         for i in range(len(owner[k])):
             p = after.get(i)
             value = float(link.table[i, p]) if p is not None else 0.0
             taken = p is not None and value >= LOST
             if taken and p is not None:
-                here[p] = owner[k][i]
+                line_at[p] = owner[k][i]
             if value < MIN_MAC and (i < count or (p is not None and p < count)):
                 rival = float(np.delete(link.table[i], p if p is not None else []).max(initial=0.0))
                 step = (points[k].omega, points[k + 1].omega)
                 frequency = float(points[k].frequencies[i])
                 doubts.append(Doubt(step, owner[k][i], frequency, value if taken else 0.0, rival))
-        for p, name in enumerate(here):
+        for p, name in enumerate(line_at):
             if name < 0:
-                here[p], tracks = tracks, tracks + 1
-        owner.append(here)
+                line_at[p], tracks = tracks, tracks + 1
+        owner.append(line_at)
     kept = sorted({name for names in owner for name in names[:count]}, key=lambda t: _first(owner, t))
     return _tables(points, links, owner, kept, doubts, speeds, smallest)
 

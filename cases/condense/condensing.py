@@ -212,11 +212,11 @@ def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Seque
     ahead = np.stack([(model.points - f[:3, 3]) @ f[:3, 0] for f in frames])  # (sections, freedoms)
     passed = (ahead > size).sum(axis=0)  # sections behind each freedom
     on = np.abs(ahead) <= size
-    for outside, which in (((passed == 0) & ~on[0], 0), (passed == len(frames), -1)):
+    for outside, end in (((passed == 0) & ~on[0], 0), (passed == len(frames), -1)):
         if outside.any():
-            far = np.abs(ahead[which, outside]).max()
+            far = np.abs(ahead[end, outside]).max()
             raise CaseError(
-                f"{path}: sections[{which % len(frames)}]: {outside.sum()} freedoms of {model.name} lie up to {far:g} m "
+                f"{path}: sections[{end % len(frames)}]: {outside.sum()} freedoms of {model.name} lie up to {far:g} m "
                 "beyond it: put the first and last sections at the model's ends"
             )
     out = np.zeros((len(frames) - 1, len(model.directions)))
@@ -224,12 +224,15 @@ def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Seque
     out[passed[between] - 1, np.flatnonzero(between)] = model.mass[between]
     sizes = abs(mass)
     for k in range(len(frames)):
-        here = np.flatnonzero(on[k])
+        on_section = np.flatnonzero(on[k])
         if k in (0, len(frames) - 1):
-            out[0 if k == 0 else -1, here] = model.mass[here]
+            out[0 if k == 0 else -1, on_section] = model.mass[on_section]
             continue
-        before, after = (sizes[here] @ side.astype(float) for side in (ahead[k] < -size, ahead[k] > size))
+        before, after = (sizes[on_section] @ side.astype(float) for side in (ahead[k] < -size, ahead[k] > size))
         both = before + after
         share = np.where(both > 0, before / np.where(both > 0, both, 1.0), 0.5)
-        out[k - 1, here], out[k, here] = share * model.mass[here], (1 - share) * model.mass[here]
+        out[k - 1, on_section], out[k, on_section] = (
+            share * model.mass[on_section],
+            (1 - share) * model.mass[on_section],
+        )
     return out

@@ -86,8 +86,8 @@ def read(path: Path, field: str, spec: Model, common: Model, units: str) -> Whol
     return Whole(model, ss.csr_array(unit @ _in_order(mass, stiffness) @ unit), resisted)
 
 
-def _load(folder: Path, spec: str | Matrix, what: str) -> Exported:
-    name, chosen = (spec.file, spec.matrix) if isinstance(spec, Matrix) else (spec, what)
+def _load(folder: Path, spec: str | Matrix, quantity: str) -> Exported:
+    name, chosen = (spec.file, spec.matrix) if isinstance(spec, Matrix) else (spec, quantity)
     path = folder / name
     files.inside(path)
     try:

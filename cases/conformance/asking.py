@@ -33,18 +33,18 @@ def require(true: Any, message: str) -> None:
         raise BrokenError(message)
 
 
-def require_close(values: Any, exact: Any, what: str, within: float, first: int = 1) -> None:
+def require_close(values: Any, exact: Any, label: str, within: float, first: int = 1) -> None:
     """Compare the frequencies (rad/s) of the modes ``first``, … with the expected ones, within a relative tolerance.
 
-    ``what`` names the blade with its parameter and speed; the message adds the mode that differs most.
+    ``label`` names the blade with its parameter and speed; the message adds the mode that differs most.
     """
     values, exact = np.atleast_1d(values), np.atleast_1d(exact)
-    require(len(values) >= len(exact), f"{what}: {len(values)} modes, {len(exact)} expected")
+    require(len(values) >= len(exact), f"{label}: {len(values)} modes, {len(exact)} expected")
     values = values[: len(exact)]
     off = np.abs(values / exact - 1.0)
     k = int(off.argmax())
-    said = f"{what}, mode {first + k}: {values[k]:.9g} rad/s, expected {exact[k]:.9g}"
-    require(off[k] <= within, f"{said}: {off[k]:.1e} apart, at most {within:.0e}")
+    message = f"{label}, mode {first + k}: {values[k]:.9g} rad/s, expected {exact[k]:.9g}"
+    require(off[k] <= within, f"{message}: {off[k]:.1e} apart, at most {within:.0e}")
 
 
 def named(code: Adapter) -> None:

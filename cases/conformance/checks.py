@@ -132,10 +132,10 @@ def order(code: BladeAdapter) -> None:
     first, second = np.abs(np.diff(f)) / f[-1]
     if second < 1e-9:
         return
-    seen = np.log(first / second) / np.log(n[1] / n[0])
+    observed = np.log(first / second) / np.log(n[1] / n[0])
     require(
-        seen > code.order - 0.3,
-        f"beam at 0 rad/s, mode 3: observed order {seen:.2f}, declared {code.order}: {f.tolist()} rad/s with {n} elements",
+        observed > code.order - 0.3,
+        f"beam at 0 rad/s, mode 3: observed order {observed:.2f}, declared {code.order}: {f.tolist()} rad/s with {n} elements",
     )
 
 

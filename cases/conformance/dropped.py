@@ -52,20 +52,20 @@ def effects(code: BladeAdapter) -> None:
         frequencies, _, bracket = limit_of(code, blades.STUBBY, blades.FAST, (-2, -1))
     except CodeError as error:
         raise NotForItError(str(error)) from error
-    here = _stubby(code.effects)
-    near = _far(frequencies, here)
+    stubby = _stubby(code.effects)
+    near = _far(frequencies, stubby)
     for name in (f.name for f in fields(Effects)):
         kept = getattr(code.effects, name)
         try:
-            change = _far(_stubby(replace(code.effects, **{name: not kept})), here)
+            change = _far(_stubby(replace(code.effects, **{name: not kept})), stubby)
         except UnstableError:  # for instance without geometric stiffness: the effect cannot be checked
             continue
         if bracket > DROPPED * change:
             raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {name}")
         require(
             near <= DROPPED * change,
-            f"effects.{name} = {kept}: {blades.STUBBY.name} at {blades.FAST:g} rad/s, mode {_mode(frequencies, here)}: differs "
-            f"by {near:.2%} from Southwell's own solver with these effects; {name} changes the frequencies by up to "
+            f"effects.{name} = {kept}: {blades.STUBBY.name} at {blades.FAST:g} rad/s, mode {_mode(frequencies, stubby)}: "
+            f"differs by {near:.2%} from Southwell's own solver with these effects; {name} changes the frequencies by up to "
             f"{change:.2%}",
         )
 

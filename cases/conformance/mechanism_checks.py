@@ -31,15 +31,15 @@ def _ask(code: MechanismAdapter, mechanism: mb.Mechanism, guess: Mapping[str, fl
     return code.solve_mechanism(mechanism, guess or {})
 
 
-def _are(modes: MechanismModes, expected: Any, what: str) -> None:
+def _are(modes: MechanismModes, expected: Any, label: str) -> None:
     """Check the eigenvalues, one of each conjugate pair, in any order."""
     exact = np.asarray(expected, np.complex128)
-    said = f"{what}: {_list(modes.values)} 1/s, expected {_list(exact)}"
-    require(len(modes.values) == len(exact), said)
+    message = f"{label}: {_list(modes.values)} 1/s, expected {_list(exact)}"
+    require(len(modes.values) == len(exact), message)
     unmatched = [complex(v.real, abs(v.imag)) for v in modes.values]
     for value in exact:
         near = min(unmatched, key=lambda v: abs(v - value))
-        require(abs(near - value) <= TOLERANCE * np.abs(exact).max(), said)
+        require(abs(near - value) <= TOLERANCE * np.abs(exact).max(), message)
         unmatched.remove(near)
 
 

@@ -32,26 +32,28 @@ def outcomes(name: str, checks: Sequence[Check] = CHECKS, limits: Limits = LIMIT
     Raises:
         UnknownCodeError: if the code is unknown.
     """
-    done: list[Outcome] = []
+    outcomes: list[Outcome] = []
     where = registry.address(name)
-    while len(done) < len(checks):
-        asked = [EVERY.index(check) for check in checks[len(done) :]]
+    while len(outcomes) < len(checks):
+        asked = [EVERY.index(check) for check in checks[len(outcomes) :]]
         request = json.dumps({**where, "checks": asked}).encode()
         lines, ended = converse(__name__, request, len(asked), limits)
         for number, line in enumerate(lines):
             try:
                 data = boundary.reply(line, number)
-                said = boundary.failure(data) or boundary.convert(data, _Judged)
+                judged = boundary.failure(data) or boundary.convert(data, _Judged)
             except NonsenseError as error:
                 ended = Failure("nonsense", one_line(error))
                 break
-            verdict, reason = ("fail", said.reason) if isinstance(said, Failure) else (said.verdict, said.reason)
-            done.append(Outcome(checks[len(done)], verdict, one_line(reason)))
+            verdict, reason = (
+                ("fail", judged.reason) if isinstance(judged, Failure) else (judged.verdict, judged.reason)
+            )
+            outcomes.append(Outcome(checks[len(outcomes)], verdict, one_line(reason)))
         else:
             if len(lines) == len(asked):
                 break
-        done.append(Outcome(checks[len(done)], "fail", ended.reason))
-    return done
+        outcomes.append(Outcome(checks[len(outcomes)], "fail", ended.reason))
+    return outcomes
 
 
 def _answer(request: Any) -> Iterator[Reply]:

@@ -57,9 +57,9 @@ def unsteady(blade: str, omega: float, error: Exception, at: Callable[[float], s
             f"{blade}: speed: {at(omega)}: implausible stiffness-to-mass ratio: use more elements if the blade is a cable, "
             "else check units"
         )
-    what = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
-    what = what.replace(f"{omega:.6g} rad/s", at(omega))
+    reason = str(error).removeprefix(f"omega: {omega:.6g} rad/s: ").removeprefix("omega: ")
+    reason = reason.replace(f"{omega:.6g} rad/s", at(omega))
     if isinstance(error, (EigensolverError, MissedModesError, LargeStrainError)):
         remedy = " (--allow-large-strain)" if isinstance(error, LargeStrainError) else ""
-        return CaseError(f"{blade}: speed: {at(omega)}: {what}{remedy}")
-    return CaseError(f"{blade}: speed: {at(omega)}: {what}")
+        return CaseError(f"{blade}: speed: {at(omega)}: {reason}{remedy}")
+    return CaseError(f"{blade}: speed: {at(omega)}: {reason}")

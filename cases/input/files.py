@@ -162,9 +162,9 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
         content = raw.decode("latin-1")
     if not content.strip():
         raise CaseError(f"{path}: empty: check that it was written to the end")
-    for begins, what in NOT_THE_FILE:
+    for begins, kind in NOT_THE_FILE:
         if content.lstrip()[: len(begins)].lower() == begins:
-            raise CaseError(f"{path}: {what}")
+            raise CaseError(f"{path}: {kind}")
     return content
 
 

@@ -130,8 +130,8 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
         choices = _choices(_walk(kind, table, raw, whole=True)[1])
     if isinstance(value, str) and choices and "nvalid" in message:
         return f"{full}: {_short(repr(value))}: not one of its values: {nearest(value, choices)}"
-    said = message[0].lower() + message[1:].replace("`", "")
-    return f"{full}: {_short(repr(value))}: {said}: check sign, unit and type"
+    sentence = message[0].lower() + message[1:].replace("`", "")
+    return f"{full}: {_short(repr(value))}: {sentence}: check sign, unit and type"
 
 
 def _choices(node: Any) -> tuple[str, ...]:

@@ -34,9 +34,9 @@ def unique(subjects: Sequence[Subject], codes: Sequence[Description], user_resul
     _once("code", columns, "leave one out, or give it another name")
 
 
-def _once(what: str, named: Iterable[tuple[str, str]], remedy: str) -> None:
-    seen: dict[str, str] = {}
+def _once(kind: str, named: Iterable[tuple[str, str]], remedy: str) -> None:
+    owners: dict[str, str] = {}
     for name, source in named:
-        if name in seen:
-            raise CaseError(f"{what}: {name!r} is given twice, by {seen[name]} and by {source}: {remedy}")
-        seen[name] = source
+        if name in owners:
+            raise CaseError(f"{kind}: {name!r} is given twice, by {owners[name]} and by {source}: {remedy}")
+        owners[name] = source

@@ -225,14 +225,16 @@ def _mode(where: str, family: str, text: str) -> tuple[str, int]:
 
 
 def _no_repeats(rows: Sequence[UserFrequency], path: Path, measured: bool) -> None:
-    seen: dict[tuple[str, float, str, int], int] = {}
+    lines: dict[tuple[str, float, str, int], int] = {}
     for row in rows:
         key = row.blade, row.omega, row.family, row.mode
-        if key in seen:
-            what = f"{row.family} {row.mode}".strip()
+        if key in lines:
+            mode = f"{row.family} {row.mode}".strip()
             remedy = "give their mean, and their scatter as its uncertainty" if measured else "keep one"
-            raise CaseError(f"{path}: line {row.line}: mode: {what} at this speed is in line {seen[key]} too: {remedy}")
-        seen[key] = row.line
+            raise CaseError(
+                f"{path}: line {row.line}: mode: {mode} at this speed is in line {lines[key]} too: {remedy}"
+            )
+        lines[key] = row.line
 
 
 def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[float]], codes: Iterable[str]) -> None:

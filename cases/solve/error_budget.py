@@ -134,8 +134,8 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
     """Largest numerical uncertainty of the codes and rounding of printed numbers, for the modes and speed of ``rows``."""
     out = []
     for omega, name in dict.fromkeys((r.omega, r.mode) for r in rows):
-        here = [c for c in cells if c.omega == omega and c.uncertainty is not None and c.name == name]
-        comparable = [c for c in here if c.verdict in ("pass", "known difference")]
+        of_mode = [c for c in cells if c.omega == omega and c.uncertainty is not None and c.name == name]
+        comparable = [c for c in of_mode if c.verdict in ("pass", "known difference")]
         for cause, part, role in (
             ("discretisation", "codes, refined", "code"),
             ("rounding", "printed digits", "table"),

@@ -72,15 +72,15 @@ def spectrum(turbine: Turbine, modes: TurbineModes) -> Spectrum:
 def labels(names: Sequence[str]) -> tuple[str, ...]:
     """``1st flap forward whirl`` → ``flap forward whirl 1``; names without a number, and repeated ones, are counted."""
     out: list[str] = []
-    seen: Counter[str] = Counter()
+    occurrences: Counter[str] = Counter()
     for name in names:
         ordinal = re.match(r"(\d+)(?:st|nd|rd|th) ", name)
         label = f"{name[ordinal.end() :]} {ordinal[1]}" if ordinal else f"{name} 1"
         family, _, number = label.rpartition(" ")
-        while label in seen:
-            seen[family] += 1
-            label = f"{family} {int(number) + seen[family]}"
-        seen[label] += 1
+        while label in occurrences:
+            occurrences[family] += 1
+            label = f"{family} {int(number) + occurrences[family]}"
+        occurrences[label] += 1
         out.append(label)
     return tuple(out)
 

@@ -41,9 +41,9 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
         "a curve that turns back": bool((np.diff(blade.curve[:, 0]) <= 0).any()),
         "a curve that begins beside the root": bool(blade.curve[0].any()),
     }
-    for what, here in lacks.items():
-        if here:
-            raise CaseError(f"{path}: BeamDyn cannot represent {what}: write TOML, which can represent any blade")
+    for feature, present in lacks.items():
+        if present:
+            raise CaseError(f"{path}: BeamDyn cannot represent {feature}: write TOML, which can represent any blade")
     axis = _axis(blade)
     z = axis.z
     degrees = np.degrees(roll(axis, z) - blade.twist)

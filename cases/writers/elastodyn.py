@@ -49,9 +49,11 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
         "a root that is not clamped": not np.isinf(blade.root).all(),
         "a tip mass (the main file has it)": bool(blade.tip_mass.any()),
     }
-    for what, here in lacks.items():
-        if here:
-            raise CaseError(f"{path}: ElastoDyn cannot represent {what}: write TOML or BeamDyn, or take it out first")
+    for feature, present in lacks.items():
+        if present:
+            raise CaseError(
+                f"{path}: ElastoDyn cannot represent {feature}: write TOML or BeamDyn, or take it out first"
+            )
     n = len(blade.stations)
     damping, pitch_axis = (_given(given, name, count) for name, count in zip(CARRIED, (3, n), strict=True))
     shapes = [shape.coefficients.tolist() for shape in polynomials(blade, omega)]

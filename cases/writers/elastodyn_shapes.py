@@ -73,9 +73,9 @@ def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polyn
         raise CaseError(f"{mode}: its tip does not move, so no polynomial that is 1 at the tip describes it")
     scaled = shape / shape[-1]
     basis = np.stack([x**k - x**6 for k in POWERS[:-1]], axis=1)
-    some, *_ = np.linalg.lstsq(basis, scaled - x**6, rcond=None)
-    some = np.round(some, DIGITS)
-    coefficients = np.append(some, round(1.0 - some.sum(), DIGITS))
+    free, *_ = np.linalg.lstsq(basis, scaled - x**6, rcond=None)
+    free = np.round(free, DIGITS)
+    coefficients = np.append(free, round(1.0 - free.sum(), DIGITS))
     deviation = np.power.outer(x, POWERS) @ coefficients - scaled
     return Polynomial(
         mode=mode,

@@ -32,12 +32,12 @@ REAL = (1, 2)
 SQUARE, SYMMETRIC = 1, 6
 
 
-def read_matrix(path: Path, what: str = "stiffness") -> Exported:
+def read_matrix(path: Path, requested: str = "stiffness") -> Exported:
     """Read one matrix.
 
     Args:
         path: of the file, in one of the formats above.
-        what: which matrix, where the file has several: the TYPE of a user element's ``*MATRIX`` (stiffness, mass), or the
+        requested: the matrix, where the file has several: the TYPE of a user element's ``*MATRIX`` (stiffness, mass), or the
             name of a DMIG (KAAX, MAAX). A file with one matrix is read whatever its name.
 
     Raises:
@@ -53,9 +53,9 @@ def read_matrix(path: Path, what: str = "stiffness") -> Exported:
         return matrix_market.read_matrix_market(path.name, text)
     lines = text.upper().splitlines()
     if any(line.startswith("*USER ELEMENT") for line in lines):
-        return _user_element(path.name, lines, what.upper())
+        return _user_element(path.name, lines, requested.upper())
     if any(line.startswith("DMIG") for line in lines):
-        return _dmig(path.name, lines, what.upper())
+        return _dmig(path.name, lines, requested.upper())
     return _triplets(path.name, text.splitlines())
 
 
@@ -80,7 +80,7 @@ def stored(path: Path) -> Exported:
     return labelled(path.name, matrix, freedoms)
 
 
-def _user_element(name: str, lines: list[str], what: str) -> Exported:
+def _user_element(name: str, lines: list[str], requested: str) -> Exported:
     nodes: list[int] = []
     active: dict[int, list[int]] = {}  # position among the nodes → freedoms from there on
     triangles: dict[str, list[float]] = {}
@@ -104,7 +104,7 @@ def _user_element(name: str, lines: list[str], what: str) -> Exported:
             active[numbers[0] if active else 1] = numbers[1:] if active else numbers
         elif card:
             triangles[card] += reals(name, [number] * len(words), words).tolist()
-    key = _chosen(name, "*MATRIX, TYPE", list(triangles), what)
+    key = _chosen(name, "*MATRIX, TYPE", list(triangles), requested)
     freedoms: list[tuple[int, int]] = []
     now: list[int] = []
     for position, node in enumerate(nodes, 1):
@@ -152,7 +152,7 @@ def _triplets(name: str, lines: list[str]) -> Exported:
     return Exported(name, by_number.matrix)
 
 
-def _dmig(name: str, lines: list[str], what: str) -> Exported:
+def _dmig(name: str, lines: list[str], requested: str) -> Exported:
     forms: dict[str, tuple[int, int]] = {}
     entries: dict[str, list[tuple[int, int, int, int]]] = {}
     values: dict[str, list[float]] = {}
@@ -181,7 +181,7 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
                 row = whole(name, number, words[k]), whole(name, number, words[k + 1])
                 entries[matrix].append((*row, *column))
                 values[matrix].append(real(name, number, words[k + 2]))
-    key = _chosen(name, "DMIG", list(entries), what)
+    key = _chosen(name, "DMIG", list(entries), requested)
     form, numbers = forms[key]
     if form not in (SQUARE, SYMMETRIC) or numbers not in REAL:
         raise MatrixFileError(
@@ -191,9 +191,9 @@ def _dmig(name: str, lines: list[str], what: str) -> Exported:
     return assembled(name, at[:, :2], at[:, 2:], np.array(values[key]), mirror=form == SYMMETRIC)
 
 
-def _chosen(name: str, kind: str, available: list[str], what: str) -> str:
+def _chosen(name: str, kind: str, available: list[str], requested: str) -> str:
     if not available:
         raise MatrixFileError(f"{name}: no {kind} found: the file may be truncated")
-    if what not in available and len(available) > 1:
-        raise MatrixFileError(f"{name}: {kind} {what} not found; there are {', '.join(available)}")
-    return what if what in available else available[0]
+    if requested not in available and len(available) > 1:
+        raise MatrixFileError(f"{name}: {kind} {requested} not found; there are {', '.join(available)}")
+    return requested if requested in available else available[0]

@@ -168,10 +168,10 @@ def check_mechanism(m: Mechanism) -> None:
         MechanismError: names used twice or unknown, an impossible inertia, a motion given twice.
     """
     names = [b.name for b in m.bodies]
-    for what, names_of_kind in (("body", names), ("joint", [j.name for j in m.joints])):
+    for label, names_of_kind in (("body", names), ("joint", [j.name for j in m.joints])):
         twice = sorted(name for name, times in Counter(names_of_kind).items() if times > 1)
         if twice:
-            raise MechanismError(f"{what} {twice[0]!r}: given twice; names must be unique")
+            raise MechanismError(f"{label} {twice[0]!r}: given twice; names must be unique")
     if GROUND in names:
         raise MechanismError("body 'ground': the name of the inertial frame; choose another")
     declared = {GROUND, *names}
@@ -179,9 +179,9 @@ def check_mechanism(m: Mechanism) -> None:
     used += [("spring", n) for s in m.springs for n in (s.body_a, s.body_b)]
     used += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b, b.axes_of)]
     used += [("load", n) for f in m.loads for n in (f.body, f.axes_of)]
-    for what, name in used:
+    for label, name in used:
         if name not in declared:
-            raise MechanismError(f"{what}: body {name!r} is unknown; there are {', '.join(sorted(declared))}")
+            raise MechanismError(f"{label}: body {name!r} is unknown; there are {', '.join(sorted(declared))}")
     moving = [x.coordinate for x in m.motions]
     if len(set(moving)) < len(moving):
         raise MechanismError(f"motion {max(moving, key=moving.count)!r}: given twice; give one per coordinate")

@@ -37,14 +37,14 @@ def check_constant(linear: Linearization) -> None:
     moving = [m for m in linear.tree.mechanism.motions if m.rate or m.acceleration]
     if not len(linear.M) or not moving:
         return
-    change, what = _largest_change(linear, moving)
+    change, term = _largest_change(linear, moving)
     if change <= MAX_CHANGE:
         return
     alone = [_largest_change(linear, moving, [m])[0] for m in moving]
     name = moving[int(np.argmax(alone))].coordinate
     cause = "gravity, which is not along its axis" if _varies_by_gravity(linear, moving) else "its motion"
     raise MechanismError(
-        f"coordinate {name!r}: {what} changes by {min(100 * change, 999.0):.3g} % of its size as it moves: the equations "
+        f"coordinate {name!r}: {term} changes by {min(100 * change, 999.0):.3g} % of its size as it moves: the equations "
         f"vary with time because of {cause}, and have no constant modes; to linearise at one instant, give the motion as a law "
         "of time"
     )
@@ -113,8 +113,8 @@ def _change(linear: Linearization, forces: Array, moving: list[Motion], time: fl
     for name, power in (("M", 2), ("C", 1), ("K", 0)):
         difference = np.abs(getattr(later_linear, name) - getattr(linear, name)) / root / root[:, None]
         changes[WORDS[name]] = float(omega**power * difference.max())
-    what = max(changes, key=lambda k: changes[k])
-    return changes[what], what
+    term = max(changes, key=lambda k: changes[k])
+    return changes[term], term
 
 
 def _after(tree: Tree, moving: list[Motion], time: float) -> Tree:

@@ -59,11 +59,11 @@ class Cartesian:
         """(6 (b + m), 6 (b + m)), sparse."""
         return self._sparse(2)
 
-    def _sparse(self, which: int) -> csr_array:
+    def _sparse(self, matrix: int) -> csr_array:
         six = np.arange(6)
         where = (6 * self.row[:, None] + six)[:, :, None], (6 * self.column[:, None] + six)[:, None, :]
         at = tuple(a.ravel() for a in np.broadcast_arrays(*where))
-        return csr_array((self.blocks[:, which].ravel(), at), shape=(self.g.size, self.g.size))
+        return csr_array((self.blocks[:, matrix].ravel(), at), shape=(self.g.size, self.g.size))
 
 
 class _Sum:
@@ -187,8 +187,8 @@ def _spring(tree: Tree, k: Kinematics, s: Spring, out: _Sum) -> None:
     line = np.concatenate([n, np.cross(pb, n)])  # wrench of a unit force along the spring
     # seen from a: δd = velocity ρ, its direction turns by the part across
     across = (np.eye(3) - np.outer(n, n)) / length
-    seen = yb - ya
-    slip = seen[:3] + np.cross(seen[3:], pb)  # velocity of b's point seen from a
+    relative = yb - ya
+    slip = relative[:3] + np.cross(relative[3:], pb)  # velocity of b's point seen from a
     tension = s.stiffness * (length - s.free_length) + s.damping * float(n @ slip)
     # δ(rate) seen from a = slip·δn + n·δslip, with δslip = velocity ρ̇ + ρ_ω × slip
     tilt = across @ velocity

@@ -120,11 +120,11 @@ def tower_modes(tower: Tower, count: int = 6) -> TowerModes:
         coarse, fine = (_solved(tower, elements, count) for elements in (ELEMENTS // 2, ELEMENTS))
     fractions = participation.participation(fine, tower.beam)
     families = fractions.argmax(1)
-    seen = [0] * len(NAMES)
+    occurrences = [0] * len(NAMES)
     names = []
     for family in families.tolist():
-        seen[family] += 1
-        names.append(f"{ordinal(seen[family])} {NAMES[family]}")
+        occurrences[family] += 1
+        names.append(f"{ordinal(occurrences[family])} {NAMES[family]}")
     change = SAFETY * np.abs(coarse.frequencies / fine.frequencies - 1.0)
     return TowerModes(fine.frequencies, tuple(names), fractions.max(1), change)
 
@@ -159,10 +159,10 @@ def check_tower(length: float, support: Support) -> None:
     for _, stiffness in support.springs:
         checked("spring", stiffness, False)
     soil = np.zeros((0, 2)) if support.soil is None else support.soil
-    for what, positions in (("springs", heights), ("soil", soil[:, 0])):
+    for label, positions in (("springs", heights), ("soil", soil[:, 0])):
         if len(positions) and not (-SAME * length <= positions.min() <= positions.max() <= (1 + SAME) * length):
             raise ValueError(
-                f"{what}: heights from {positions.min():g} to {positions.max():g} m: the tower is {length:g} m high"
+                f"{label}: heights from {positions.min():g} to {positions.max():g} m: the tower is {length:g} m high"
             )
     if len(soil) and (len(soil) < 2 or (np.diff(soil[:, 0]) <= 0).any() or (soil[:, 1] < 0).any()):
         raise ValueError("soil: give two heights or more that ascend, and no negative stiffness")

@@ -150,7 +150,7 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
         modes = Modes(0.0, component.frequencies, stations.elastic(component, mesh, shape, p), mesh.elements)
         fractions = participation.participation(modes, beam)
         families = [words[int(row.argmax())] for row in fractions]
-        seen: dict[str, int] = {}
+        occurrences: dict[str, int] = {}
         group: list[int] = []
         base = (
             made.base_energy(np.eye(component.size, dtype=complex))
@@ -161,9 +161,9 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
             if base[:, k].sum() > 0.5 * component.frequencies[k] ** 2:
                 group.append(out.index(f"platform {PLATFORM[int(base[:, k].argmax())]}"))
                 continue
-            seen[family] = seen.get(family, 0) + 1
+            occurrences[family] = occurrences.get(family, 0) + 1
             prefix = "tower " if part == "tower" else ""
-            out.append(f"{ordinal(seen[family])} {prefix}{family}")
+            out.append(f"{ordinal(occurrences[family])} {prefix}{family}")
             group.append(len(out) - 1)
         numbers[part] = np.array(group, dtype=np.intp)
     return tuple(out), numbers

@@ -103,9 +103,9 @@ class ExudynMechanism(MechanismAdapter):
             return "an accelerating motion: Exudyn's static solver supports rates only"
         tree = compile_tree(mechanism)
         own = own_coordinates(tree)
-        for what in (*mechanism.motions, *mechanism.coordinate_springs):
-            if tree.coordinate(what.coordinate) >= own:
-                return f"{what.coordinate}: a spring or motion on a joint that closes a loop: cut another joint"
+        for item in (*mechanism.motions, *mechanism.coordinate_springs):
+            if tree.coordinate(item.coordinate) >= own:
+                return f"{item.coordinate}: a spring or motion on a joint that closes a loop: cut another joint"
         return None
 
     def mechanism_modes(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:

@@ -117,11 +117,11 @@ def install(environment: Environment) -> Path:
         "--requirement",
         str(folder / "requirements.txt"),
     ]
-    done = subprocess.run([*pip, *options], capture_output=True, text=True, check=False)
-    if done.returncode:
-        said = [line for line in done.stderr.splitlines() if line.startswith("ERROR")] or ["no message"]
+    completed = subprocess.run([*pip, *options], capture_output=True, text=True, check=False)
+    if completed.returncode:
+        errors = [line for line in completed.stderr.splitlines() if line.startswith("ERROR")] or ["no message"]
         raise EnvironmentMissingError(
-            f"{environment.name}: pip install {' '.join(pins)}: {said[0]} (hashes are available for {PLATFORMS} only)"
+            f"{environment.name}: pip install {' '.join(pins)}: {errors[0]} (hashes are available for {PLATFORMS} only)"
         )
     (folder / READY).write_text(f"southwell {version('southwell')}\n", encoding="utf-8")
     return folder
@@ -136,17 +136,17 @@ def ask(environment: Environment, request: dict[str, Any]) -> dict[str, Any]:
     if environment.version() is None:
         raise CodeError(f"{environment.name} is not installed: {environment.hint}")
     script = Path(__file__).with_name("answer.py")
-    done = subprocess.run(
+    completed = subprocess.run(
         [str(environment.python), "-I", str(script), environment.module],
         input=json.dumps(request),
         capture_output=True,
         text=True,
         check=False,
     )
-    if done.returncode or not done.stdout:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
-        raise CodeError(f"{environment.name}: its process ended with exit status {done.returncode}: {last}")
-    answer = json.loads(done.stdout)
+    if completed.returncode or not completed.stdout:
+        last = (completed.stderr.strip().splitlines() or ["no message"])[-1]
+        raise CodeError(f"{environment.name}: its process ended with exit status {completed.returncode}: {last}")
+    answer = json.loads(completed.stdout)
     if "error" in answer:
         raise CodeError(f"{environment.name}: {answer['error']}")
     return answer

@@ -25,18 +25,18 @@ def solve(request):
     state.dqdt[:] = 0.0
     state.dqddt[:] = 0.0
     xbeam.cbeam3_solv_disp2state(beam, state)
-    q, done, step = state.q[:d].copy(), 0.0, 1.0
+    q, reached, step = state.q[:d].copy(), 0.0, 1.0
     length = np.ptp(np.array(request["nodes"]), axis=0).max()
     size = np.tile(np.repeat([length, 1.0], 3), d // 6)
-    while done < 1.0:
-        load = min(1.0, done + step)
+    while reached < 1.0:
+        load = min(1.0, reached + step)
         balanced = newton(xbeam, beam, state, request["omega"] * load**0.5, q, size)
         if balanced is not None:
-            q, done = balanced, load
+            q, reached = balanced, load
         elif step > 2.0**-6:
             step /= 2
         else:
-            return {"error": f"no steady state above {done:.0%} of the centrifugal load"}
+            return {"error": f"no steady state above {reached:.0%} of the centrifugal load"}
     M, C, K, _ = assembled(xbeam, beam, state, request["omega"], q)
     return {name: packed(value) for name, value in (("M", M), ("C", C), ("K", K), ("q", q))}
 

@@ -226,17 +226,17 @@ def steady_coordinates(model: ChainModel, elastic: Array, omega: float, chain: M
     Raises:
         CodeError: no steady state near the undeformed chain.
     """
-    q, done, step = np.zeros(len(elastic)), 0.0, 1.0
+    q, reached, step = np.zeros(len(elastic)), 0.0, 1.0
     stiffness = np.zeros_like(elastic)
-    while done < 1.0:
-        load = min(1.0, done + step)
+    while reached < 1.0:
+        load = min(1.0, reached + step)
         balanced = _newton(model, elastic, omega * load**0.5, q, chain)
         if balanced is not None:
-            (q, stiffness), done = balanced, load
+            (q, stiffness), reached = balanced, load
         elif step > SMALLEST_RAMP:
             step /= 2
         else:
-            raise CodeError(f"omega: {omega:g} rad/s: no steady state above {done:.0%} of Ω²; lower the speed")
+            raise CodeError(f"omega: {omega:g} rad/s: no steady state above {reached:.0%} of Ω²; lower the speed")
     return q, stiffness
 
 

@@ -88,13 +88,13 @@ def pinocchio_model(chain: Mesh) -> Any:
     pin = _pinocchio()
     model = pin.Model()
     model.gravity.setZero()
-    here = pin.SE3.Identity()
-    link = model.addJoint(0, pin.JointModelRZ(), here, "hub")
+    origin = pin.SE3.Identity()
+    link = model.addJoint(0, pin.JointModelRZ(), origin, "hub")
     for k, (pose, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
         link = model.addJoint(link, pin.JointModelTranslation(), pin.SE3(pose), f"{k} x y z")
         for axis, kind in (("x", pin.JointModelRX), ("y", pin.JointModelRY), ("z", pin.JointModelRZ)):
-            link = model.addJoint(link, kind(), here, f"{k} about {axis}")
-        model.appendBodyToJoint(link, pin.Inertia.FromDynamicParameters(_parameters(lump)), here)
+            link = model.addJoint(link, kind(), origin, f"{k} about {axis}")
+        model.appendBodyToJoint(link, pin.Inertia.FromDynamicParameters(_parameters(lump)), origin)
     return model
 
 

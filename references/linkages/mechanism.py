@@ -46,9 +46,9 @@ class PinocchioMechanism(MechanismAdapter):
             names = spanning(mechanism).names
         except ValueError as error:
             return str(error)
-        for what in (*mechanism.motions, *mechanism.coordinate_springs):
-            if what.coordinate not in names:
-                return f"{what.coordinate}: every joint of its loop has a spring or a motion: leave one without"
+        for item in (*mechanism.motions, *mechanism.coordinate_springs):
+            if item.coordinate not in names:
+                return f"{item.coordinate}: every joint of its loop has a spring or a motion: leave one without"
         return None
 
     def mechanism_modes(self, mechanism: Mechanism, guess: Mapping[str, float]) -> MechanismModes:

@@ -98,9 +98,9 @@ def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops:
     order: list[int] = []
     ahead = [-1]
     while ahead:
-        here = ahead.pop()
-        order.append(here)
-        ahead += [k for k, link in reversed(list(enumerate(links))) if link.parent == here]
+        part = ahead.pop()
+        order.append(part)
+        ahead += [k for k, link in reversed(list(enumerate(links))) if link.parent == part]
     renumbered = {old: new for new, old in enumerate(order, -1)}
     ordered = tuple(replace(links[old], parent=renumbered[links[old].parent]) for old in order[1:])
     return Spanning(ordered, {name: (renumbered[link], pose) for name, (link, pose) in bodies.items()}, loops)

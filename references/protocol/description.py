@@ -149,16 +149,20 @@ def _described(asked: str, data: dict[str, Any], blades: int) -> Description:
     try:
         if failure := boundary.failure(data):
             return _failed(asked, failure)
-        said = boundary.convert({**data, "asked": asked, "failure": None}, Description)
-        _require(said.blades or said.mechanisms or said.turbines, "the code solves no blades, mechanisms or turbines")
-        if said.blades or said.turbines:
-            _require(len(said.levels) > 0, "levels: (): give at least one refinement")
-            _require(bool(np.all(np.diff(said.levels) > 0)), f"levels: {said.levels}: not ascending")
-        _require(len(said.refused) in (0, blades), f"unsupported(): {len(said.refused)} answers for {blades} blades")
+        answer = boundary.convert({**data, "asked": asked, "failure": None}, Description)
+        _require(
+            answer.blades or answer.mechanisms or answer.turbines, "the code solves no blades, mechanisms or turbines"
+        )
+        if answer.blades or answer.turbines:
+            _require(len(answer.levels) > 0, "levels: (): give at least one refinement")
+            _require(bool(np.all(np.diff(answer.levels) > 0)), f"levels: {answer.levels}: not ascending")
+        _require(
+            len(answer.refused) in (0, blades), f"unsupported(): {len(answer.refused)} answers for {blades} blades"
+        )
     except NonsenseError as invalid:
         return _failed(asked, Failure("nonsense", one_line(invalid)), data.get("name"))
     failure = Failure("nonsense", one_line(error)) if error else None
-    return replace(said, refused=tuple(why and one_line(why) for why in said.refused), failure=failure)
+    return replace(answer, refused=tuple(why and one_line(why) for why in answer.refused), failure=failure)
 
 
 def _require(true: bool, message: str) -> None:

@@ -75,11 +75,11 @@ class Child:
         """Return the exit code; None while the process is running."""
         while self.returncode is None:
             try:
-                got = os.read(self._status, 64)
+                received = os.read(self._status, 64)
             except BlockingIOError:
                 break
-            self._said += got
-            if not got:
+            self._said += received
+            if not received:
                 codes = self._said.split(b"\n")[1:-1]
                 self.returncode = int(codes[0]) if codes else -signal.SIGKILL  # the supervisor was killed
         return self.returncode

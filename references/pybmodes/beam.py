@@ -237,7 +237,9 @@ def _at_stations(shapes: Sequence[Any], radius: float, length: float) -> NDArray
     s, at = shapes[0].span_loc * length, STATIONS * length
     out = np.zeros((len(shapes), len(at), 4), complex)
     for axis, name in ((1, "lag"), (2, "flap")):
-        moved, slope = (np.array([getattr(shape, f"{name}_{what}") for shape in shapes]) for what in ("disp", "slope"))
+        moved, slope = (
+            np.array([getattr(shape, f"{name}_{motion}") for shape in shapes]) for motion in ("disp", "slope")
+        )
         out[:, :, axis] = CubicHermiteSpline(s, moved * radius, slope, axis=1)(at)
     out[:, :, 3] = CubicSpline(s, np.array([shape.twist for shape in shapes]), axis=1)(at)
     return out

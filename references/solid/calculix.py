@@ -48,8 +48,8 @@ def version() -> str | None:
     """Version of ``ccx`` on the PATH; None if there is none."""
     if shutil.which("ccx") is None:
         return None
-    said = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout
-    match = re.search(r"Version\s+(\S+)", said)
+    output = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout
+    match = re.search(r"Version\s+(\S+)", output)
     return match[1] if match else "unknown"
 
 
@@ -178,7 +178,7 @@ def run(lines: Sequence[str]) -> Iterator[Path]:
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
         (folder / "blade.inp").write_text("\n".join(lines) + "\n")
-        done = subprocess.run(
+        completed = subprocess.run(
             ["ccx", "-i", "blade"],
             cwd=folder,
             capture_output=True,
@@ -186,10 +186,10 @@ def run(lines: Sequence[str]) -> Iterator[Path]:
             check=False,
             env={**os.environ, "OMP_NUM_THREADS": "1"},
         )
-        error = re.search(r"\*ERROR[^\n]*\n?[^\n]*", done.stdout)
-        if done.returncode or error:
-            said = " ".join(error[0].split()) if error else done.stderr.strip()
-            raise CodeError(f"ccx ended with status {done.returncode}: {said or 'no message'}")
+        error = re.search(r"\*ERROR[^\n]*\n?[^\n]*", completed.stdout)
+        if completed.returncode or error:
+            message = " ".join(error[0].split()) if error else completed.stderr.strip()
+            raise CodeError(f"ccx ended with status {completed.returncode}: {message or 'no message'}")
         yield folder
 
 

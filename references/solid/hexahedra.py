@@ -155,9 +155,9 @@ def _pattern(own: NDArray[np.intp], nodes: int) -> tuple[NDArray[np.intp], ...]:
     return entry, whole.indptr, whole.indices, whole.data
 
 
-def part(s: Solid, which: NDArray[np.bool_]) -> Solid:
+def part(s: Solid, chosen: NDArray[np.bool_]) -> Solid:
     """The solid with only some of its elements (e,); the nodes remain."""
-    return replace(s, moduli=s.moduli[which], own=s.own[which], slopes=s.slopes[which], volume=s.volume[which])
+    return replace(s, moduli=s.moduli[chosen], own=s.own[chosen], slopes=s.slopes[chosen], volume=s.volume[chosen])
 
 
 def internal_force(s: Solid, u: Array) -> Array:

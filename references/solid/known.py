@@ -89,7 +89,7 @@ def _other_mount(blade: Blade) -> str:
         "a root that is not clamped": not clamped(blade),
         "kinks": blade.kinks,
     }
-    return ", ".join(f"{name}: this solid has none" for name, here in having.items() if here)
+    return ", ".join(f"{name}: this solid has none" for name, present in having.items() if present)
 
 
 def _off(given: Array, expected: Array, allowed: float) -> str:

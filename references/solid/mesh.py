@@ -155,10 +155,10 @@ def mean_motions(nodes: Array, weights: Array, u: NDArray[Any]) -> NDArray[np.co
     root, tip = nodes[:, 0].min(), nodes[:, 0].max()
     sections = []
     for at in root + STATIONS * (tip - root):
-        here = np.flatnonzero(np.abs(nodes[:, 0] - at) < 1e-9 * max(abs(root), abs(tip)))
-        if not len(here):
+        on_section = np.flatnonzero(np.abs(nodes[:, 0] - at) < 1e-9 * max(abs(root), abs(tip)))
+        if not len(on_section):
             raise CodeError(f"mesh: no layer of nodes at the station x = {at:g} m: use a multiple of ten layers")
-        sections.append((here, np.array([at, 0.0, 0.0])))
+        sections.append((on_section, np.array([at, 0.0, 0.0])))
     return means(nodes, weights, u, sections)
 
 
@@ -173,10 +173,10 @@ def means(
     """
     out = np.zeros((u.shape[2], len(sections), 4), complex)
     directions = np.arange(3)
-    for k, (here, at) in enumerate(sections):
+    for k, (on_section, at) in enumerate(sections):
         frame = np.eye(4)
         frame[:3, 3] = at
-        R = ties.motion(np.tile(nodes[here], (3, 1)), np.repeat(directions, len(here)), frame)
-        weighed = R.T * np.tile(weights[here], 3)
-        out[:, k] = np.linalg.solve(weighed @ R, weighed @ u[:, here].reshape(3 * len(here), -1))[:4].T
+        R = ties.motion(np.tile(nodes[on_section], (3, 1)), np.repeat(directions, len(on_section)), frame)
+        weighed = R.T * np.tile(weights[on_section], 3)
+        out[:, k] = np.linalg.solve(weighed @ R, weighed @ u[:, on_section].reshape(3 * len(on_section), -1))[:4].T
     return out
