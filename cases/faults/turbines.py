@@ -53,15 +53,15 @@ def _projected(alter: Callable[[Any], Any]) -> tuple[Seam, ...]:
 
 def _frozen(right: Any) -> Any:
     """The azimuth is a constant: its derivatives are missing."""
-    return lambda blade, omega, P: right(blade, omega, (P[0], 0.0 * P[1], 0.0 * P[2]))
+    return lambda own, omega, P: right(own, omega, (P[0], 0.0 * P[1], 0.0 * P[2]))
 
 
 def _not_gyroscopic(right: Any) -> Any:
     """Multi-blade coordinates without the term 2 Ω M P′."""
 
-    def wrong(blade: Any, omega: float, P: Sequence[Any]) -> Any:
-        M, C, K = right(blade, omega, P)
-        return M, C - 2.0 * omega * P[0].T @ blade.M @ P[1], K
+    def wrong(own: Any, omega: float, P: Sequence[Any]) -> Any:
+        M, C, K = right(own, omega, P)
+        return M, C - 2.0 * omega * P[0].T @ own[0] @ P[1], K
 
     return wrong
 

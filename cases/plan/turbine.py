@@ -18,6 +18,7 @@ from ...references.protocol.process import Limits
 from ...references.readers.turbine_mass import Weighed
 from .. import data
 from ..input import readers
+from ..input.errors import CaseError
 from ..input.readers.source import Mount, Source
 from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
@@ -71,6 +72,13 @@ class TurbineSubject(NotABlade):
     groups: int = 1
     time_limit: float = 300.0
     mount: Mount = field(default_factory=Mount)
+
+    def __post_init__(self) -> None:
+        if self.turbine.blades == 2:
+            raise CaseError(
+                f"{self.path}: two blades: no other code here solves them on a tower; `southwell campbell` does, by Floquet's "
+                "and Hill's methods, and --blade-only verifies one blade"
+            )
 
     @property
     def users(self) -> bool:

@@ -27,39 +27,51 @@ _FIRST = 16  # steps of the first integration
 _EPS = float(np.finfo(float).eps)
 
 
-def floquet(system: Periodic) -> Exponents:
+def floquet(system: Periodic, half_turn: Array | None = None, accuracy: float = ACCURACY) -> Exponents:
     """The 2n exponents of a periodic system of n coordinates, with their errors.
+
+    Args:
+        system: the system.
+        half_turn: (n,) signs S of the coordinates with which the equations are the same half a revolution later, as those of
+            two equal blades. The solutions of half a revolution suffice, x(t + T/2) = e^{sT/2} S x(t), and exponents are
+            defined up to multiples of 2iΩ.
+        accuracy: as ``ACCURACY``.
 
     Raises:
         PeriodicError: the rotor stands still, a coordinate has no mass, or the integration does not converge.
     """
     require_rotation(system)
     with one_thread():
-        return _converged(system)
+        return _converged(system, half_turn, accuracy)
 
 
-def _converged(system: Periodic) -> Exponents:
+def _converged(system: Periodic, half_turn: Array | None, accuracy: float) -> Exponents:
     """``floquet`` with steps halved until the exponents remain."""
     steps, previous = _FIRST, None
+    turns = 1.0 if half_turn is None else 0.5
+    time = turns * system.period
+    signs = np.ones(len(system.names)) if half_turn is None else half_turn
     while True:
-        states = _fundamental(system, steps)
-        multipliers, vectors = np.linalg.eig(states[-1])
+        states = _fundamental(system, steps, turns)
+        multipliers, vectors = np.linalg.eig(np.tile(signs, 2)[:, None] * states[-1])
         if previous is not None:
             change = distance(previous, multipliers)
             rounding = 10.0 * _EPS * _condition(vectors) * np.linalg.norm(states[-1], 2) / np.abs(multipliers)
-            error = np.maximum(change, rounding) * abs(system.omega) / (2.0 * np.pi)
-            if (change <= np.maximum(2.0 * np.pi * ACCURACY, 10.0 * rounding)).all():
+            error = np.maximum(change, rounding) / time
+            if (change <= np.maximum(2.0 * np.pi * turns * accuracy, 10.0 * rounding)).all():
                 break
             if steps >= MAX_STEPS:
                 raise PeriodicError(
                     f"Floquet: exponents change by {error.max() / abs(system.omega):.1e} Ω between {steps // 2} and {steps} "
-                    "steps per revolution: a frequency is too high for this speed; reduce the system to its lower modes"
+                    "steps per revolution: a frequency is too high for this speed; reduce the system to its lower modes, or "
+                    "give higher speeds"
                 )
         previous, steps = multipliers, 2 * steps
-    values: Complex = np.asarray(
-        np.log(multipliers.astype(np.complex128)) * abs(system.omega) / (2.0 * np.pi), np.complex128
-    )
-    shapes = separated(multipliers, _harmonics(states, vectors, values, system), np.abs(multipliers).max())
+    values: Complex = np.asarray(np.log(multipliers.astype(np.complex128)) / time, np.complex128)
+    motion = _over_time(states, vectors, values, time)
+    if half_turn is not None:
+        motion = np.concatenate([motion, half_turn[:, None] * motion])
+    shapes = separated(multipliers, _harmonics(motion, system), np.abs(multipliers).max())
     return exponents(system.omega, values, error, shapes, system.mean[0], steps)
 
 
@@ -81,13 +93,12 @@ def _condition(vectors: Complex) -> Array:
     return np.minimum(left_norms * np.linalg.norm(vectors, axis=0), _EPS**-0.5)
 
 
-def _fundamental(system: Periodic, steps: int) -> Array:
-    """(steps + 1, 2n, 2n) solutions (x, ẋ) from all initial states, at the ends of the steps of one revolution."""
+def _fundamental(system: Periodic, steps: int, turns: float) -> Array:
+    """(steps + 1, 2n, 2n) solutions (x, ẋ) from all initial states, at the ends of the steps of so many revolutions."""
     nodes, a, b = _gauss()
-    h = system.period / steps
+    h = turns * system.period / steps
     n = len(system.names)
-    sign = np.sign(system.omega)
-    psi = sign * 2.0 * np.pi * (np.arange(steps)[:, None] + nodes) / steps
+    psi = system.omega * h * (np.arange(steps)[:, None] + nodes)
     A = _state_matrix(system, psi)  # (steps, stages, 2n, 2n)
     out = np.empty((steps + 1, 2 * n, 2 * n))
     out[0] = np.eye(2 * n)
@@ -113,13 +124,17 @@ def _state_matrix(system: Periodic, psi: Array) -> Array:
     return A
 
 
-def _harmonics(states: Array, vectors: Complex, values: Complex, system: Periodic) -> Complex:
-    """(2H + 1, n, m) harmonics of p from solutions at equal azimuths."""
-    steps = len(states) - 1
-    time = system.period * np.arange(steps) / steps
-    p = (states[:-1, : len(system.names)] @ vectors) * np.exp(-values * time[:, None])[:, None, :]
-    spectrum = np.fft.fft(p, axis=0) / steps
-    top = steps // 2 - 1
+def _over_time(states: Array, vectors: Complex, values: Complex, time: float) -> Complex:
+    """(steps, n, m) p = x e^{−st} at the beginning of each step of a time."""
+    steps, n = len(states) - 1, states.shape[1] // 2
+    t = time * np.arange(steps) / steps
+    return (states[:-1, :n] @ vectors) * np.exp(-values * t[:, None])[:, None, :]
+
+
+def _harmonics(motion: Complex, system: Periodic) -> Complex:
+    """(2H + 1, n, m) harmonics of p from its values (k, n, m) at k equal azimuths."""
+    spectrum = np.fft.fft(motion, axis=0) / len(motion)
+    top = len(motion) // 2 - 1
     order = np.arange(-top, top + 1) * int(np.sign(system.omega))
     return spectrum[order]
 

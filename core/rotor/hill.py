@@ -29,6 +29,12 @@ ACCURACY = 1e-11
 MAX_SIZE = 4000
 """Largest number of unknowns of the eigenproblem."""
 
+TAIL = 1e-5
+"""Relative size of the harmonics that Newton's method leaves out at first."""
+
+MAX_STEPS = 20
+"""Largest number of Newton's steps."""
+
 _EPS = float(np.finfo(float).eps)
 
 
@@ -66,6 +72,67 @@ def _converged(system: Periodic) -> Exponents:
         f"Hill: exponents change by {change:.1e} Ω at {H - step} harmonics: a frequency or the variation of the matrices is "
         "too large for this speed; reduce the system to its lower modes"
     )
+
+
+def refined(
+    system: Periodic, value: complex, shape: Complex, accuracy: float = ACCURACY, half_turn: Array | None = None
+) -> tuple[complex, Complex, float]:
+    """The solution of Hill's equations near an exponent and its harmonics, by Newton's method.
+
+    Args:
+        system: the system.
+        value: the exponent, 1/s.
+        shape: (2H + 1, n) its harmonics −H … H.
+        accuracy: as ``ACCURACY``.
+        half_turn: (n,) factors of the motion half a revolution later; coordinates with 1 have even harmonics alone, those
+            with −1 odd ones. None if there is no such symmetry.
+
+    Returns:
+        The exponent, its harmonics (2H + 1, n), and the change under more harmonics, 1/s.
+
+    Raises:
+        PeriodicError: no convergence.
+    """
+    require_rotation(system)
+    top, n = len(shape) // 2, shape.shape[1]
+    order = np.arange(-top, top + 1)
+    kept = np.ones(shape.shape, bool) if half_turn is None else (-1.0) ** order[:, None] == half_turn
+    size = np.abs(shape * np.sqrt(np.diagonal(system.mean[0]))).max(1)
+    H = max(2, *(np.abs(order[size > TAIL * size.max()])).tolist())
+    previous, change = None, np.inf
+    while n * (2 * H + 1) <= MAX_SIZE and top >= H:
+        about = slice(top - H, top + H + 1)
+        found, p = _newton(system, value, shape[about], kept[about])
+        if previous is not None:
+            change = abs(found - previous)
+            if change <= accuracy * abs(system.omega):
+                return found, p, change
+        previous, H = found, H + max(system.harmonics, 1)
+    raise PeriodicError(
+        f"Hill: an exponent changes by {change / abs(system.omega):.1e} Ω at {H} harmonics: give higher speeds"
+    )
+
+
+def _newton(system: Periodic, s: complex, shape: Complex, kept: NDArray[np.bool_]) -> tuple[complex, Complex]:
+    """A solution (s, p) of Hill's equations with the ``kept`` harmonics; p's component along the first guess remains."""
+    H, n = len(shape) // 2, shape.shape[1]
+    keep = np.flatnonzero(kept)
+    M, C, K = (_toeplitz(part, H)[np.ix_(keep, keep)] for part in (system.M, system.C, system.K))
+    D = np.repeat(1j * np.arange(-H, H + 1) * system.omega, n)[keep]
+    p = shape.ravel()[keep] / np.linalg.norm(shape.ravel()[keep])
+    bordered = np.zeros((len(keep) + 1, len(keep) + 1), np.complex128)
+    bordered[-1, :-1] = p.conj()
+    for _ in range(MAX_STEPS):
+        rate = s + D
+        bordered[:-1, :-1] = M * rate**2 + C * rate + K
+        bordered[:-1, -1] = 2.0 * (M @ (rate * p)) + C @ p
+        step = np.linalg.solve(bordered, np.append(-bordered[:-1, :-1] @ p, 0.0))
+        p, s = p + step[:-1], s + complex(step[-1])
+        if abs(step[-1]) <= 100.0 * _EPS * max(abs(s), abs(system.omega) * H):
+            out = np.zeros(shape.size, np.complex128)
+            out[keep] = p
+            return s, out.reshape(shape.shape)
+    raise PeriodicError(f"Hill: Newton's method does not converge near {abs(s):.4g} rad/s")
 
 
 def _centred(system: Periodic, H: int) -> tuple[Complex, Complex, float]:

@@ -1,4 +1,4 @@
-"""Multi-blade coordinates: the motions of N ≥ 3 equal blades as collective, cosine, sine and differential ones.
+"""Multi-blade coordinates: the motions of N equal blades as collective, cosine, sine and differential ones.
 
 Blade k = 0 … N − 1 is at the azimuth ψ_k = ψ + 2πk/N, positive about the rotor's axis. Its coordinate is
 
@@ -20,15 +20,12 @@ Array = NDArray[np.float64]
 Index = NDArray[np.intp]
 
 MIN_BLADES = 3
-"""Fewer blades have no multi-blade coordinates in which a rotor on an elastic support has constant equations."""
+"""Fewer blades have no multi-blade coordinates in which a rotor on an elastic support has constant equations: those of two
+blades are collective and differential, and turn with the rotor."""
 
 
 def names(blades: int) -> tuple[str, ...]:
-    """Names of the N multi-blade coordinates: ``collective``, ``cosine``, ``sine`` …, ``differential``.
-
-    Raises:
-        ValueError: fewer than three blades.
-    """
+    """Names of the N multi-blade coordinates: ``collective``, ``cosine``, ``sine`` …, ``differential``."""
     harmonics = _harmonics(blades)
     numbers = ["" if m == 1 else f" {m}" for m in range(1, harmonics + 1)]
     pairs = [f"{name}{number}" for number in numbers for name in ("cosine", "sine")]
@@ -161,6 +158,4 @@ def first_order(A: Array, psi: ArrayLike, omega: float, positions: Blades, rates
 
 def _harmonics(blades: int) -> int:
     """Number of pairs of cosine and sine coordinates."""
-    if blades < MIN_BLADES:
-        raise ValueError(f"blades: {blades}: multi-blade coordinates need at least 3 equal blades")
     return (blades - 1) // 2

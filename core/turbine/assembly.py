@@ -1,5 +1,6 @@
 """The equations of a turbine at a speed: tower, nacelle, drivetrain and rotor, linearised in the ground's frame."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -7,6 +8,8 @@ from numpy.typing import NDArray
 
 from ..effects import ALL_EFFECTS
 from ..element.mesh import Mesh
+from ..rotor import multiblade
+from ..rotor.periodic import Matrices, Periodic, PeriodicError, sampled
 from ..space import spatial as sp
 from ..spectrum.mesh_solver import balance
 from ..threads import one_thread
@@ -24,8 +27,8 @@ Array = NDArray[np.float64]
 class Assembled:
     """The turbine's equations at a speed, in the ground's frame and multi-blade coordinates.
 
-    The n coordinates are t motions of the tower, the shaft's angles, and r motions of the blades for each multi-blade
-    coordinate.
+    The n coordinates are t motions of the tower, the angles of the shaft and of the hub's hinge, and r motions of the blades
+    for each multi-blade coordinate. The equations of two blades are those at the azimuth 0.
 
     Attributes:
         omega: rad/s.
@@ -33,6 +36,7 @@ class Assembled:
         tower: its component.
         blade: that of one blade.
         shaft: indices of the angles of hub and generator, if there are any.
+        teeter: index of the angle of the hub's hinge, if there is one.
         blades: (N, r) indices of the blades' coordinates, by multi-blade coordinate.
         hub: (6, n) twist of the hub's non-rotating frame, in its axes.
         meshes, shapes: of tower and blade, in the steady state.
@@ -46,6 +50,7 @@ class Assembled:
     tower: Component
     blade: Component
     shaft: tuple[int, ...]
+    teeter: tuple[int, ...]
     blades: NDArray[np.intp]
     hub: Array
     meshes: tuple[Mesh, Mesh]
@@ -61,6 +66,29 @@ def assemble(made: Machine, omega: float) -> Assembled:
         PeriodicError: they vary with the azimuth.
         SteadyStateError: the blades have no steady state.
     """
+    a, _ = _built(made, omega)
+    if made.turbine.blades < multiblade.MIN_BLADES:
+        raise PeriodicError(
+            f"blades: {made.turbine.blades}: the equations of two blades vary with the azimuth and have no constant modes; "
+            "`southwell campbell` solves them by Floquet's and Hill's methods"
+        )
+    same = (rotor(made.turbine, a.blade, omega, psi) for psi in (0.0, 0.7))
+    check_constant(*same, abs(omega) + float(a.blade.frequencies[0]))
+    return a
+
+
+def periodic(made: Machine, omega: float) -> tuple[Assembled, Periodic]:
+    """The turbine's equations at a speed, rad/s, at the azimuth 0 and as periodic functions of it.
+
+    Raises:
+        SteadyStateError: the blades have no steady state.
+    """
+    a, at = _built(made, omega)
+    return a, sampled(at, omega, tuple(f"x{k}" for k in range(len(a.M))))
+
+
+def _built(made: Machine, omega: float) -> tuple[Assembled, Callable[[float], Matrices]]:
+    """The equations at the azimuth 0, and at any."""
     turbine = made.turbine
     with one_thread():
         state = balance(made.blade_mesh, omega, np.zeros(3), ALL_EFFECTS)
@@ -68,14 +96,13 @@ def assemble(made: Machine, omega: float) -> Assembled:
             blade = component.reduced_component(made.blade_mesh, state, made.resolution.blade_modes)
         else:
             blade = component.restricted(made.blade_mesh, state, made.blade_motions)
-    coupled = rotor(turbine, blade, omega, 0.0)
-    check_constant(coupled, rotor(turbine, blade, omega, 0.7), abs(omega) + float(blade.frequencies[0]))
-    t, r, n = made.tower.size, blade.size, turbine.blades
+    t, r, n, hinges = made.tower.size, blade.size, turbine.blades, turbine.hinge.shape[1]
     drive = turbine.drivetrain
     rigid = np.isinf(drive.stiffness)
     angles = (0 if rigid else 1) + (1 if drive.free else 0)  # of the hub, and of the generator
-    blades = t + angles + np.arange(n * r).reshape(n, r)
-    size = t + angles + n * r
+    teeter = t + angles + np.arange(hinges)
+    blades = t + angles + hinges + np.arange(n * r).reshape(n, r)
+    size = t + angles + hinges + n * r
     # twist of the hub, without and with the shaft's angle, and rotation of the generator
     nacelle = np.zeros((6, size))
     nacelle[:, :t] = sp.adjoint(sp.inverse(turbine.shaft)) @ made.tower.tip
@@ -84,27 +111,37 @@ def assemble(made: Machine, omega: float) -> Assembled:
         hub_twist[:, t] += RZ
     if drive.free:
         generator[t + angles - 1] += 1.0
-    J = np.zeros((n * r + 6, size))
+    J = np.zeros((n * r + 6 + hinges, size))
     J[np.arange(n * r), blades.ravel()] = 1.0
-    J[n * r :] = hub_twist
-    M, C, K = (J.T @ part @ J for part in coupled)
-    for total, part in zip((M, C, K), (made.tower.M, made.tower.C, made.tower.K), strict=True):
-        total[:t, :t] += part
-    M += drive.generator * drive.gear_ratio**2 * np.outer(generator, generator)
+    J[n * r : n * r + 6] = hub_twist
+    J[n * r + 6 + np.arange(hinges), teeter] = 1.0
+    springs = np.zeros((size, size))
     if not rigid:
         twist = np.zeros(size)
         twist[t] = 1.0
         if drive.free:
             twist[t + 1] = -1.0
-        K += drive.stiffness * np.outer(twist, twist)
-    return Assembled(
+        springs += drive.stiffness * np.outer(twist, twist)
+    if turbine.teeter:
+        springs[teeter, teeter] += turbine.teeter.stiffness
+
+    def at(psi: float) -> Matrices:
+        M, C, K = (J.T @ part @ J for part in rotor(turbine, blade, omega, psi))
+        for total, part in zip((M, C, K), (made.tower.M, made.tower.C, made.tower.K), strict=True):
+            total[:t, :t] += part
+        M += drive.generator * drive.gear_ratio**2 * np.outer(generator, generator)
+        return 0.5 * (M + M.T), C, K + springs
+
+    M, C, K = at(0.0)
+    assembled = Assembled(
         omega=omega,
-        M=0.5 * (M + M.T),
+        M=M,
         C=C,
         K=K,
         tower=made.tower,
         blade=blade,
         shaft=tuple(range(t, t + angles)),
+        teeter=tuple(teeter.tolist()),
         blades=blades,
         hub=hub_twist,
         meshes=(made.tower_mesh, made.blade_mesh),
@@ -112,3 +149,4 @@ def assemble(made: Machine, omega: float) -> Assembled:
         tower_links=made.tower_state.pencil.links,
         blade_links=state.pencil.links,
     )
+    return assembled, at

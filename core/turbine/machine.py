@@ -9,7 +9,6 @@ from ..effects import ALL_EFFECTS
 from ..element.branches import CLAMPED, attached, hub
 from ..element.discretize import discretize
 from ..element.mesh import Mesh
-from ..rotor import multiblade
 from ..space.inertia import transformed
 from ..spectrum.mesh_solver import balance
 from ..steady.blade_state import Steady
@@ -27,15 +26,19 @@ Array = NDArray[np.float64]
 
 @dataclass(frozen=True)
 class Resolution:
-    """How finely a turbine is modelled: elements and modes of tower and blade."""
+    """How finely a turbine is modelled: elements and modes of tower and blade, and motions of two blades on a tower.
+
+    Of the latter, as many are used as modes are computed, and ``periodic_motions`` more.
+    """
 
     tower_elements: int = 12
     blade_elements: int = 24
     tower_modes: int = 8
     blade_modes: int = 12
+    periodic_motions: int = 6
 
 
-FINER = Resolution(24, 48, 14, 20)
+FINER = Resolution(24, 48, 14, 20, 12)
 """The resolution with which the default one is compared."""
 
 
@@ -91,14 +94,13 @@ def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Ass
         assumed: shapes to which tower and blades are restricted.
 
     Raises:
-        ValueError: fewer than three blades.
+        ValueError: fewer than two blades, or a hinge of another number than two.
         SteadyStateError, UnstableError: the tower does not carry the weight.
     """
-    if turbine.blades < multiblade.MIN_BLADES:
-        raise ValueError(
-            f"{turbine.name}: {turbine.blades} blades: a turbine needs at least three equal blades here; build a mechanism "
-            "for two, which has no constant modes"
-        )
+    if turbine.blades < 2:
+        raise ValueError(f"{turbine.name}: {turbine.blades} blade: a turbine here has two or more equal blades")
+    if turbine.teeter and turbine.blades != 2:
+        raise ValueError(f"{turbine.name}: teeter: {turbine.blades} blades: only a hub of two blades teeters")
     how = resolution or Resolution()
     with one_thread():
         blade_mesh = discretize(turbine.blade, how.blade_elements)

@@ -5,8 +5,9 @@
     y_k = (q_k, ξ_k) = P(ψ_k) (q_0, q_c, q_s, …, ξ_H),
 
 with the multi-blade coordinates of ``multiblade``. Summed over N ≥ 3 blades, Pᵀ(M P), Pᵀ(C P + 2Ω M P′) and
-Pᵀ(K P + Ω C P′ + Ω² M P″) do not depend on ψ. They couple to the tower through ξ_H. The rotor's net wrench on the hub
-vanishes: no gravity acts on the blades' own motions, only the rotor's weight on nacelle and tower.
+Pᵀ(K P + Ω C P′ + Ω² M P″) do not depend on ψ; those of two blades, which may teeter on the shaft, do. They couple to the tower
+through ξ_H. The rotor's net wrench on the hub vanishes: no gravity acts on the blades' own motions, only the rotor's weight on
+nacelle and tower.
 """
 
 from collections.abc import Sequence
@@ -27,34 +28,50 @@ RZ = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
 
 
 def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple[Array, Array, Array]:
-    """M, C, K (nr + 6, nr + 6) of hub and blades over (multi-blade coordinates, ξ_H) at the azimuth ψ of blade 0."""
-    n, r = turbine.blades, blade.size
+    """M, C, K (nr + 6 + h, …) of hub and blades over (multi-blade coordinates, ξ_H, h angles of the hinge) at the azimuth ψ."""
+    n, r, hinge = turbine.blades, blade.size, turbine.hinge
+    size = n * r + 6 + hinge.shape[1]
     T, R = multiblade.transformation(psi, n), multiblade.rate(n)
-    out = [np.zeros((n * r + 6, n * r + 6)) for _ in range(3)]
+    parts = [in_ground_frame(spinning(turbine.hub, omega), omega, _hub_motion(psi, 0.0, hinge, n * r))]
     for k in range(n):
-        turns = turned_axes(psi + 2.0 * np.pi * k / n)
+        turned = 2.0 * np.pi * k / n
         P = []
-        for order, rotation in enumerate(turns):
-            part = np.zeros((r + 6, n * r + 6))
-            part[:r, : n * r] = np.kron((T @ np.linalg.matrix_power(R, order))[k], np.eye(r))
-            part[r:, n * r :] = rotation
-            P.append(part)
-        for total, part in zip(out, in_ground_frame(blade, omega, P), strict=True):
-            total += part
-    spin = omega * RZ
-    momentum = turbine.hub @ spin
-    out[0][-6:, -6:] += turbine.hub
-    # a symmetric body that spins about its axis: δg = M ξ̈ + (Y ×* M − M Y × + M Y ×̄*) ξ̇, in the frame that does not spin
-    out[1][-6:, -6:] += -sp.coadjoint(momentum)
-    return out[0], out[1], out[2]
-
-
-def in_ground_frame(blade: Component, omega: float, P: Sequence[Array]) -> tuple[Array, Array, Array]:
-    """M, C, K of one blade over coordinates z with y = P(ψ) z; ``P``: P, P′ and P″ at an azimuth."""
-    M = P[0].T @ blade.M @ P[0]
-    C = P[0].T @ (blade.C @ P[0] + 2.0 * omega * blade.M @ P[1])
-    K = P[0].T @ (blade.K @ P[0] + omega * blade.C @ P[1] + omega**2 * blade.M @ P[2])
+        for order, of_root in enumerate(_hub_motion(psi, turned, hinge, n * r)):
+            own = np.zeros((r, size))
+            own[:, : n * r] = np.kron((T @ np.linalg.matrix_power(R, order))[k], np.eye(r))
+            P.append(np.concatenate([own, of_root]))
+        parts.append(in_ground_frame((blade.M, blade.C, blade.K), omega, P))
+    M, C, K = (np.sum(part, axis=0) for part in zip(*parts, strict=True))
     return M, C, K
+
+
+def _hub_motion(psi: float, turned: float, hinge: Array, before: int) -> list[Array]:
+    """(6, nr + 6 + h) twist of the hub in its axes turned by an angle from blade 0, and its derivatives with respect to ψ."""
+    out = []
+    for order, rotation in enumerate(turned_axes(psi + turned)):
+        on_hinge = turned_axes(turned)[0] @ hinge if order == 0 else np.zeros_like(hinge)
+        out.append(np.concatenate([np.zeros((6, before)), rotation, on_hinge], axis=1))
+    return out
+
+
+def spinning(inertia: Array, omega: float) -> tuple[Array, Array, Array]:
+    """M, C, K (6, 6) over the twist, in its axes, of a body that spins about its z axis, a central principal one.
+
+    With Y = Y₀ + ξ̇ + Y₀ × ξ, g = M Ẏ + Y ×* M Y.
+    """
+    spin = sp.ad(omega * RZ)
+    turning = -spin.T @ inertia - sp.coadjoint(inertia @ (omega * RZ))
+    return inertia, inertia @ spin + turning, turning @ spin
+
+
+def in_ground_frame(own: tuple[Array, Array, Array], omega: float, P: Sequence[Array]) -> tuple[Array, Array, Array]:
+    """M, C, K over coordinates z with y = P(ψ) z from those over y of a part that turns; ``P``: P, P′ and P″ at an azimuth."""
+    M, C, K = own
+    return (
+        P[0].T @ M @ P[0],
+        P[0].T @ (C @ P[0] + 2.0 * omega * M @ P[1]),
+        P[0].T @ (K @ P[0] + omega * C @ P[1] + omega**2 * M @ P[2]),
+    )
 
 
 def turned_axes(psi: float) -> tuple[Array, Array, Array]:

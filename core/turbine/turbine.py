@@ -1,4 +1,4 @@
-"""The description of a turbine: tower, nacelle, drivetrain, hub and N equal blades.
+"""The description of a turbine: tower, nacelle, drivetrain, hub and N equal blades; two may teeter.
 
 Axes as for a ``Blade``: the tower's x axis points up, z downwind and y = z × x; the shaft's z axis is the rotor's, along which
 the wind blows.
@@ -37,6 +37,24 @@ class Drivetrain:
 
 
 @dataclass(frozen=True)
+class Teeter:
+    """The hinge between the shaft and a hub of two blades, about the y axis of the hub: across the shaft and the blades.
+
+    Attributes:
+        undersling: distance from the hinge to the hub's centre, positive if the centre is upwind, m.
+        stiffness: N m/rad.
+    """
+
+    undersling: float = 0.0
+    stiffness: float = 0.0
+
+    @property
+    def twist(self) -> Array:
+        """(6, 1) twist of the hub at its centre, per unit of the hinge's angle."""
+        return np.array([[-self.undersling, 0.0, 0.0, 0.0, 1.0, 0.0]]).T
+
+
+@dataclass(frozen=True)
 class Turbine:
     """A turbine; SI units.
 
@@ -44,7 +62,7 @@ class Turbine:
         name: for tables.
         tower: a beam along x, upwards; its ``tip_mass`` is the body at its top without nacelle and rotor.
         blade: one of the blades.
-        blades: N ≥ 3.
+        blades: N ≥ 2.
         nacelle: (6, 6) inertia at the tower's top, in the tower's axes.
         hub: (6, 6) inertia of the hub at its centre, in the shaft's axes; it turns with the rotor.
         shaft: (4, 4) pose of the hub's centre, z along the rotor's axis and x in the vertical plane, from the tower's top.
@@ -52,6 +70,7 @@ class Turbine:
         drivetrain: the shaft and generator.
         gravity: m/s².
         support: springs that hold the tower; rigid ground by default.
+        teeter: the hinge of a hub of two blades; None if the hub is fixed to the shaft.
     """
 
     name: str
@@ -65,6 +84,12 @@ class Turbine:
     drivetrain: Drivetrain = field(default_factory=Drivetrain)
     gravity: float = G
     support: Support = field(default_factory=Support)
+    teeter: Teeter | None = None
+
+    @property
+    def hinge(self) -> Array:
+        """(6, h) twist of the hub, in its axes, per unit of the angle of each of h = 0 or 1 hinges between it and the shaft."""
+        return np.zeros((6, 0)) if self.teeter is None else self.teeter.twist
 
 
 def shaft_pose(to_shaft: float, overhang: float, tilt: float) -> Array:

@@ -6,7 +6,7 @@ collective, cosine and sine motion are added, and the whirl follows from the pha
 """
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
@@ -24,6 +24,7 @@ from .assembly import Assembled, assemble
 from .machine import Machine
 from .motion import Motion, displacements, flattened
 from .tower import NAMES, ordinal
+from .two_blades import periodic_modes
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -44,6 +45,7 @@ PLATFORM = ("heave", "sway", "surge", "yaw", "pitch", "roll")
 
 TURNS = "rotor turns freely"
 SHAFT = "drivetrain torsion"
+TEETER = "teeter"
 
 
 @dataclass(frozen=True)
@@ -52,16 +54,18 @@ class TurbineModes:
 
     Attributes:
         omega: rad/s.
-        frequencies: (m,) rad/s, ascending, in the ground's frame; the free rotation of the rotor is left out.
-        growth: (m,) real parts, 1/s: rounding, unless gyroscopic forces destabilise the machine.
+        frequencies: (m,) rad/s, ascending, in the ground's frame; of two blades, those of blades in the rotor's. The free
+            rotation of the rotor is left out.
+        growth: (m,) real parts, 1/s: rounding, unless gyroscopic or periodic forces destabilise the machine.
         names: (m,) as ``1st flap forward whirl``.
-        confidence: (m,) part of the elastic energy in the motion that names each mode.
+        confidence: (m,) part of the elastic energy in the motion that names each mode; of two blades, at most the part of the
+            largest harmonic in the motion.
         energies: (m, g) parts of the groups ``groups``; each row adds up to 1.
         groups: (g,) names of the motions.
         shapes: (m, k) displacements of tower, shaft and blades by multi-blade coordinate, for tracking; the largest is 1.
         parts: positions and displacements of tower, hub and blades, by multi-blade coordinate.
         directions: (m,) whirl of the blades' motion, from −1, backward, to 1, forward.
-        motions: (m, 21 (1 + N), 4) motion of the stations of tower and blades, see ``stations``.
+        motions: (m, 21 (1 + N), 4) motion of the stations of tower and blades, see ``stations``; no stations of two blades.
     """
 
     omega: float
@@ -81,10 +85,22 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
     """The ``count`` lowest modes of a turbine at a speed, rad/s.
 
     Raises:
-        PeriodicError: the equations vary with the azimuth.
+        PeriodicError: the equations of three or more blades vary with the azimuth; those of two are not solved with certainty,
+            or the rotor stands still.
         SteadyStateError: the blades have no steady state.
         EigenError: the eigenvalue solver fails.
     """
+    if made.turbine.blades >= multiblade.MIN_BLADES:
+        return _constant_modes(made, omega, count)
+    a, solved = periodic_modes(made, omega, count)
+    labels, numbers = _labels(made, a)
+    harmonics = [_energies(made, a, h.T, numbers, len(labels)).sum(0) for h in solved.harmonics]
+    modes = _named(made, a, solved.values, solved.shapes, np.array(harmonics))
+    return replace(modes, confidence=np.minimum(modes.confidence, solved.participation))
+
+
+def _constant_modes(made: Machine, omega: float, count: int) -> TurbineModes:
+    """The modes of constant equations."""
     a = assemble(made, omega)
     free = made.turbine.drivetrain.free
     rigid = np.zeros((len(a.M), 0))
@@ -96,7 +112,15 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
     keep = np.flatnonzero(np.abs(eigenpairs.values) > RIGID * a.blade.frequencies[0])[:count]
     values, vectors = eigenpairs.values[keep], eigenpairs.vectors[:, keep]
     labels, numbers = _labels(made, a)
-    energies = _energies(made, a, vectors, numbers, len(labels))
+    modes = _named(made, a, values, vectors, _energies(made, a, vectors, numbers, len(labels)))
+    return replace(modes, motions=stations.motions(made.turbine, a, vectors))
+
+
+def _named(made: Machine, a: Assembled, values: Complex, vectors: Complex, energies: Array) -> TurbineModes:
+    """Modes with eigenvalues (m,), shapes (n, m) and elastic energies (m, g)."""
+    total = energies.sum(1, keepdims=True)
+    energies = energies / np.where(total > 0, total, 1.0)
+    labels, numbers = _labels(made, a)
     names, directions = [], np.zeros(len(values))
     for k, x in enumerate(vectors.T):
         group = int(energies[k].argmax())
@@ -107,7 +131,7 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         names.append(label)
     motion = _motion(made, a, vectors)
     return TurbineModes(
-        omega=omega,
+        omega=a.omega,
         frequencies=np.abs(values),
         growth=values.real,
         names=tuple(names),
@@ -117,7 +141,7 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         shapes=flattened(motion, vectors[list(a.shaft)].T, a.meshes[1].scale),
         parts=motion,
         directions=directions,
-        motions=stations.motions(made.turbine, a, vectors),
+        motions=np.zeros((len(values), 0, 4), np.complex128),
     )
 
 
@@ -139,7 +163,7 @@ def _turned(a: Assembled, label: str, x: Complex, motions: NDArray[np.intp]) -> 
 
 def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDArray[np.intp]]]:
     """Names of the groups, and the group of each elastic motion of ``tower`` and ``blade``."""
-    out: list[str] = ["yaw", SHAFT, *(f"platform {name}" for name in PLATFORM)]
+    out: list[str] = ["yaw", SHAFT, *(f"platform {name}" for name in PLATFORM), *([TEETER] if a.teeter else [])]
     numbers: dict[str, NDArray[np.intp]] = {}
     parts = (
         ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], NAMES),
@@ -170,7 +194,7 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
 
 
 def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, NDArray[np.intp]], count: int) -> Array:
-    """(m, g) parts of the elastic energy in each group."""
+    """(m, g) elastic energy in each group; that of a teeter hinge includes its centrifugal stiffness."""
     t = a.tower.size
     out = np.zeros((vectors.shape[1], count))
     squared = np.abs(vectors) ** 2
@@ -185,11 +209,13 @@ def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, 
     if a.shaft and np.isfinite(made.turbine.drivetrain.stiffness):
         shaft_twist = vectors[a.shaft[0]] - (vectors[a.shaft[1]] if len(a.shaft) > 1 else 0.0)
         out[:, 1] = made.turbine.drivetrain.stiffness * np.abs(shaft_twist) ** 2
+    if a.teeter:
+        (hinge,) = a.teeter
+        out[:, 2 + len(PLATFORM)] = a.K[hinge, hinge] * squared[hinge]
     for index, row in enumerate(a.blades):
         weight = _weight(index, len(a.blades))
         np.add.at(out.T, numbers["blade"], weight * a.blade.frequencies[:, None] ** 2 * squared[row])
-    total = out.sum(1, keepdims=True)
-    return out / np.where(total > 0, total, 1.0)
+    return out
 
 
 def _weight(index: int, blades: int) -> float:
@@ -201,13 +227,17 @@ def _motion(made: Machine, a: Assembled, vectors: Complex) -> Motion:
     """The motion of tower, hub and blades in modes (n, m)."""
     tower = displacements(a.shapes[0], a.tower_links, a.tower.vectors)
     blade = displacements(a.shapes[1], a.blade_links, a.blade.vectors)
+    blades = np.einsum("nrm,rqi->mnqi", vectors[a.blades], blade)
+    for angle, twist in zip(a.teeter, made.turbine.hinge.T, strict=True):
+        moved = twist[:3] + np.cross(twist[3:], a.shapes[1].nodes[:, :3, 3])  # of blade 0; blade 1 moves the other way
+        blades[:, 1] += vectors[angle][:, None, None] * moved
     return Motion(
         tower=a.shapes[0].nodes[:, :3, 3],
         shaft=a.shapes[0].nodes[-1] @ made.turbine.shaft,
         blade=a.shapes[1].nodes[:, :3, 3],
         tower_motion=np.einsum("rm,rpi->mpi", vectors[: a.tower.size], tower),
         hub=vectors.T @ a.hub.T,
-        blades=np.einsum("nrm,rqi->mnqi", vectors[a.blades], blade),
+        blades=blades,
     )
 
 

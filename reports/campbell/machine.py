@@ -21,7 +21,15 @@ PAGE = "campbell.md"
 
 DPI = 180
 
+UNSTABLE = 1e-5
+"""Growth rate, as a fraction of the frequency, above which a mode is unstable."""
+
 FRAME = "Frequencies are in the ground's frame: a blade sees a backward whirl 1P higher and a forward whirl 1P lower."
+
+OF_TWO_BLADES = (
+    "Frequencies of the tower are in the ground's frame, those of the two blades in the rotor's: each side sees a mode of the "
+    "other 1P higher and lower. A mode moves at several such frequencies; that of its largest part is given."
+)
 
 NAMED = (
     "A mode is named by the motion with the largest part of its elastic energy, which is the confidence; below 50 % "
@@ -31,9 +39,15 @@ NAMED = (
 _DASHES = {"tower": "-", "collective": (0, (5, 2)), "forward": (0, (4, 1.5, 1, 1.5)), "backward": (0, (1, 1.2))}
 
 
+def frame(diagram: MachineDiagram) -> str:
+    """In which frame the frequencies are."""
+    return FRAME if diagram.turbine.blades > 2 else OF_TWO_BLADES
+
+
 def sheets(diagram: MachineDiagram, units: Units) -> tuple[Sheet, ...]:
     """All tables that have rows."""
-    return tuple(s for s in (_modes(diagram, units), _margins(diagram, units), _crossings(diagram, units)) if s.rows)
+    parts = _modes(diagram, units), _unstable(diagram, units), _margins(diagram, units), _crossings(diagram, units)
+    return tuple(part for part in parts if part.rows)
 
 
 def _modes(diagram: MachineDiagram, units: Units) -> Sheet:
@@ -52,7 +66,19 @@ def _modes(diagram: MachineDiagram, units: Units) -> Sheet:
         "confidence",
         "name changes",
     )
-    return Sheet("Modes", head, tuple(rows), f"{FRAME} {NAMED}")
+    return Sheet("Modes", head, tuple(rows), f"{frame(diagram)} {NAMED}")
+
+
+def _unstable(diagram: MachineDiagram, units: Units) -> Sheet:
+    rows = []
+    for line in diagram.lines:
+        growth = [float(modes.growth[k]) for modes, k in zip(diagram.solved, line.places, strict=True)]
+        worst = int(np.argmax(growth))
+        if growth[worst] > UNSTABLE * line.frequencies[worst]:
+            speed = units.at(float(diagram.omega[worst]))
+            rows.append((f"{TOO_NEAR} {line.name}", f"{growth[worst]:.2g} 1/s", speed))
+    note = "Largest growth at the solved speeds; without damping. It can lie between them too."
+    return Sheet("Unstable modes", ("mode", "growth", "at"), tuple(rows), note)
 
 
 def _changes(diagram: MachineDiagram, line: ModeLine, units: Units) -> str:
@@ -127,7 +153,7 @@ def draw(diagram: MachineDiagram, units: Units, heading: str) -> Figure:
         axes.set_ylim(0.0, top)
         axes.set_xlabel(units.speed_label)
         axes.set_ylabel(units.frequency_label)
-        title(figure, heading, "ground's frame")
+        title(figure, heading, "ground's frame" if diagram.turbine.blades > 2 else "ground's and rotor's frame")
     return figure
 
 

@@ -16,7 +16,7 @@ from ..shared.certain import certain, relative
 from ..shared.style import COLOURS, MUTED
 from ..shared.units import Units
 from .interactive import PAGE, POLICY
-from .machine import FRAME, NAMED
+from .machine import NAMED, frame
 
 AMPLITUDE = 0.08
 """Largest drawn motion, relative to the height of the machine."""
@@ -183,7 +183,7 @@ def write(diagram: MachineDiagram, folder: Path, units: Units) -> Path:
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         f"<title>Campbell diagram of {escape(diagram.turbine.name)}</title>\n<style>{_STYLE}</style>\n</head>\n"
         f"<body>\n<h1>{escape(diagram.turbine.name)}: natural frequencies versus rotor speed</h1>\n"
-        f'<p class="note">{escape(FRAME)} {escape(NAMED)}</p>\n{figure}\n{_BODY}'
+        f'<p class="note">{escape(frame(diagram))} {escape(NAMED)}</p>\n{figure}\n{_BODY}'
         f'<script type="application/json" id="machine-data">{data}</script>\n<script>{script}</script>\n</body>\n</html>\n',
     )
     return path

@@ -66,7 +66,7 @@ BlFract PitchAxis StrcTwst BMassDen FlpStff EdgStff
 1.0 0.3 0 15 3.0E+06 2.0E+07
 """
 
-SERVO = "------- SERVODYN INPUT FILE\nsmall\n3.0E+07 YawSpr\n"
+SERVO = "------- SERVODYN INPUT FILE\nsmall\n3.0E+07 YawSpr\n2.0E+04 YawDamp\n"
 
 PRIMARY = """------- OPENFAST INPUT FILE
 small
@@ -77,9 +77,21 @@ small
 """
 
 
-def deck(folder: Path, free: bool = False, yaw: bool = True) -> Path:
-    """Write the deck; return its primary file."""
+TEETER = """True TeetDOF
+0.2 UndSling
+0 Delta3
+1 TeetMod
+9.0E+03 TeetDmp
+0 TeetSStP
+5.0E+05 TeetSSSp
+"""
+
+
+def deck(folder: Path, free: bool = False, yaw: bool = True, two: bool = False) -> Path:
+    """Write the deck, also that of a teetering rotor of ``two`` blades; return its primary file."""
     text = MAIN.format(blade='"blade.dat"', tower='"tower.dat"', free=free, yaw=yaw)
+    if two:
+        text = text.replace("3 NumBl", "2 NumBl").replace("-3 PreCone(3)\n", "") + TEETER
     for name, content in (
         ("main.dat", text),
         ("tower.dat", TOWER),

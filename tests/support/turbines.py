@@ -74,7 +74,14 @@ def as_mechanism(turbine: Turbine, how: Resolution, omega: float) -> mb.Mechanis
     )
     if not np.isinf(stiffness):
         springs.append(mb.CoordinateSpring("torsion.rz", stiffness))
-    joints.append(mb.Joint("spin", "revolute", "shaft", "hub"))
+    if turbine.teeter is None:
+        joints.append(mb.Joint("spin", "revolute", "shaft", "hub"))
+    else:
+        pin = mb.at(z=turbine.teeter.undersling, axis="y")
+        bodies.append(mb.Body("spinning"))
+        joints.append(mb.Joint("spin", "revolute", "shaft", "spinning"))
+        joints.append(mb.Joint("teeter", "revolute", "spinning", "hub", pin, pin))
+        springs.append(mb.CoordinateSpring("teeter.rz", turbine.teeter.stiffness))
     for k in range(turbine.blades):
         turn = sp.pose(sp.rotation(2, np.array(2 * np.pi * k / turbine.blades)), np.zeros(3))
         add("pqrs"[k], blade, "hub", turn @ blade.nodes[0])

@@ -101,6 +101,15 @@ class NacelleData(Struct, frozen=True, forbid_unknown_fields=True):
     yaw_stiffness: Annotated[float, Meta(gt=0, description="N m/rad; locked by default")] | None = None
 
 
+class TeeterData(Struct, frozen=True, forbid_unknown_fields=True):
+    """A hinge across the shaft and the blades."""
+
+    undersling: Annotated[
+        float, Meta(description="from the hinge to the hub's centre along the shaft, positive upwind, m")
+    ] = 0.0
+    stiffness: Annotated[float, Meta(ge=0, description="N m/rad")] = 0.0
+
+
 class HubData(Struct, frozen=True, forbid_unknown_fields=True):
     """The hub, which turns with the rotor."""
 
@@ -108,13 +117,14 @@ class HubData(Struct, frozen=True, forbid_unknown_fields=True):
     inertia: Annotated[float, Meta(ge=0, description="about the shaft, kg m²")] = 0.0
     transverse_inertia: Annotated[float, Meta(ge=0, description="about the hub's other axes, kg m²")] = 0.0
     centre: Annotated[float, Meta(description="of mass, from the hub's centre along the shaft, downwind, m")] = 0.0
+    teeter: Annotated[TeeterData, Meta(description="hinge between the shaft and a hub of two blades")] | None = None
 
 
 class RotorData(Struct, frozen=True, forbid_unknown_fields=True):
     """The blades; lengths and angles that their file defines need not be given."""
 
     blade: Annotated[str, Meta(description="file of a blade in any format that `southwell modes` reads")]
-    blades: Annotated[int, Meta(ge=1, description="number of blades; at least 3")] = 3
+    blades: Annotated[int, Meta(ge=2, description="number of blades")] = 3
     length: Annotated[float, Meta(gt=0, description="of a blade, m")] | None = None
     hub_radius: Annotated[float, Meta(ge=0, description="m")] | None = None
     precone: Annotated[float, Meta(description="degrees towards downwind; an upwind rotor's is negative")] | None = None

@@ -10,7 +10,7 @@ from ....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ....core.space import spatial as sp
 from ....core.space.inertia import transformed
 from ....core.turbine.tower import Support, Tower, check_tower
-from ....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
+from ....core.turbine.turbine import Drivetrain, Teeter, Turbine, shaft_pose
 from .. import readers, toml
 from ..errors import CaseError
 from ..readers.matrices import BEAMDYN, in_axes
@@ -92,8 +92,9 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
     assert data.rotor is not None
     assert data.nacelle is not None
     assert data.hub is not None
-    if data.rotor.blades < 3:
-        raise CaseError(f"{path}: rotor.blades: {data.rotor.blades}: give 3 or more; describe fewer as a mechanism")
+    teeter = data.hub.teeter
+    if teeter and data.rotor.blades != 2:
+        raise CaseError(f"{path}: hub.teeter: with {data.rotor.blades} blades: only a hub of two teeters; correct one")
     blade = _blade(path, data.rotor, mount)
     name = data.name or path.stem
     beam, files = _beam(path, f"{name}'s tower", data.tower)
@@ -113,6 +114,7 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
         ),
         gravity=data.gravity,
         support=held,
+        teeter=Teeter(teeter.undersling, teeter.stiffness) if teeter else None,
     )
     notes = (
         GROUND if held.rigid else "on the springs of tower.support",

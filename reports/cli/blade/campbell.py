@@ -79,8 +79,8 @@ def command(
 ) -> int:
     """Compute the Campbell diagram of a blade or a turbine and judge its margins.
 
-    An OpenFAST .fst or HAWC2 .htc file with a tower and at least three blades gives the modes of the whole turbine in the
-    ground's frame.
+    An OpenFAST .fst file with a tower and two blades or more, or a HAWC2 .htc file with three or more, gives the modes of the
+    whole turbine.
 
     Prints the verdict on the margins, then tables of the modes, of the margins to n per revolution (nP), of resonances, and of
     crossings and veerings. Writes campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds

@@ -22,12 +22,15 @@ from ..arguments import typed
 SPEEDS = 31
 """Number of speeds by default."""
 
+SPEEDS_OF_TWO_BLADES = 10, 0.5
+"""The same of two blades, whose equations are periodic, and the lowest relative to the deck's rotor speed."""
+
 BEYOND = 1.25
 """Highest speed by default, relative to the deck's rotor speed."""
 
 
 def is_turbine(name: str) -> bool:
-    """Whether a file names the tower and at least three blades of a turbine."""
+    """Whether a file names the tower and the blades of a turbine."""
     path = Path(name)
     with files.reading(path, deck=True):
         return reader.is_turbine(path)
@@ -60,7 +63,9 @@ def run(
         if read.speed <= 0:
             raise CaseError(f"--rpm: missing: {name} has no rotor speed: give speeds, as in 0:15:0.5")
         top = np.ceil(BEYOND * read.speed * RPM.speeds)
-        given = tuple((np.linspace(0.0, top, SPEEDS) / RPM.speeds).tolist()), RPM
+        count, lowest = SPEEDS_OF_TWO_BLADES if read.turbine.blades == 2 else (SPEEDS, 0.0)
+        first = lowest * read.speed * RPM.speeds
+        given = tuple((np.linspace(first, top, count) / RPM.speeds).tolist()), RPM
     speeds, units = given
     settings = MachineRequest(speeds, request.modes, request.per_rev, request.operating, request.margin)
     diagram = machine_diagram(read.turbine, settings, at=units.at)

@@ -56,6 +56,6 @@ def test_uncoupled_blades_seen_from_the_support() -> None:
 
 def test_refused() -> None:
     with pytest.raises(ValueError, match="at least 3"):
-        mb.transformation(0.0, 2)
+        mb.blades_of(2, [[0, 1]])
     with pytest.raises(ValueError, match="two groups"):
         mb.blades_of(5, [[0, 1, 2], [2, 3, 4]])

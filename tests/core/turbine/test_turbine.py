@@ -77,11 +77,6 @@ def test_four_blades_have_a_differential_motion() -> None:
     assert any(name.endswith("differential") for name in names)
 
 
-def test_fewer_than_three_blades_are_refused() -> None:
-    with pytest.raises(ValueError, match="at least three"):
-        machine(small(blades=2), SMALL)
-
-
 def test_names_and_tracking() -> None:
     made = machine(small(), SMALL)
     slow, fast = turbine_modes(made, OMEGA, 8), turbine_modes(made, 1.02 * OMEGA, 8)

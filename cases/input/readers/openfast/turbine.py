@@ -11,14 +11,14 @@ from pathlib import Path
 
 import numpy as np
 
-from .....core.space import spatial as sp
-from .....core.space.inertia import transformed
 from .....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from ...errors import CaseError
 from ..source import Mount, Source, TurbineReading, Unused, unused
-from ..text import Text, keys, load, number, value, whole
+from ..text import Text, keys, load, value, whole
+from . import elastodyn_hub as hubs
 from . import elastodyn_tower as tower_reader
 from . import fst
+from .elastodyn_hub import body, flag, number_or
 
 NAME = "OpenFAST turbine"
 AXES = "nacelle: x downwind, y to port, z up; here x = its z, y = its −y, z = its x"
@@ -27,13 +27,20 @@ Named = dict[str, tuple[int, str]]
 
 GROUND = "rigid ground: platform and water are not included"
 FLOATER = f"{GROUND}; a TOML file with the keys openfast and support gives them as 6×6"
-DAMPING = {"DTTorDmp": "N m s/rad"}
+DAMPING = {"DTTorDmp": "N m s/rad", "YawFrctMod": "", "sig_v": "N m s/rad"}
+MODULES = ("CompHydro", "CompSub", "CompMooring", "CompIce", "CompSoil")
+"""Modules of OpenFAST under the tower; 0 if they are not used."""
+UNDAMPED = "modes are undamped"
+INERTIA = {
+    "PtfmMass": "kg",
+    **dict.fromkeys(("PtfmRIner", "PtfmPIner", "PtfmYIner", "PtfmXYIner", "PtfmYZIner", "PtfmXZIner"), "kg m²"),
+}
 PLATFORM = ("PtfmSgDOF", "PtfmSwDOF", "PtfmHvDOF", "PtfmRDOF", "PtfmPDOF", "PtfmYDOF")
 NO_TOWER_TORSION = "the tower is rigid in torsion, as in ElastoDyn"
 
 
 def is_turbine(path: Path) -> bool:
-    """Whether a file is a primary file of which the tower file exists and the rotor has at least three blades."""
+    """Whether a file is a primary file of which the tower file exists and the rotor has at least two blades."""
     if path.suffix.lower() != ".fst" or not path.is_file():
         return False
     try:
@@ -41,7 +48,7 @@ def is_turbine(path: Path) -> bool:
         if not fst.matches_format(text):
             return False
         main = load(fst.file_named(text, "EDFile"))
-        return tower_reader.tower_file(main).is_file() and whole(main, keys(main), "NumBl") >= 3
+        return tower_reader.tower_file(main).is_file() and whole(main, keys(main), "NumBl") >= 2
     except (CaseError, OSError):
         return False
 
@@ -61,25 +68,30 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     named = keys(main)
     blade = fst.read(path, mount)
     tower_text = load(tower_reader.tower_file(main))
+    blades = whole(main, named, "NumBl")
+    hinge, undersling, hinge_note = hubs.teeter(main, named) if blades == 2 else (None, 0.0, ())
     tower, tower_notes = tower_reader.beam(tower_text, tower_reader.tower_height(main))
     yaw, yaw_note, servo = _yaw(primary, main, named)
-    stiffness = value(main, named, "DTTorSpr") if _flag(main, named, "DrTrDOF") else np.inf
-    free = _flag(main, named, "GenDOF")
+    stiffness = value(main, named, "DTTorSpr") if flag(main, named, "DrTrDOF") else np.inf
+    free = flag(main, named, "GenDOF")
     drivetrain = Drivetrain(stiffness, value(main, named, "GenIner"), value(main, named, "GBRatio"), free)
-    gravity = _number(primary, "Gravity", _number(main, "Gravity", 9.80665))
+    gravity = number_or(primary, "Gravity", number_or(main, "Gravity", 9.80665))
     turbine = Turbine(
         name=path.stem,
         tower=tower,
         blade=blade.blade,
-        blades=whole(main, named, "NumBl"),
+        blades=blades,
         nacelle=_nacelle(main, named),
-        hub=_hub(main, named),
+        hub=hubs.hub(main, named) if blades > 2 else hubs.hub_of_two(main, named, undersling),
         shaft=shaft_pose(
-            value(main, named, "Twr2Shft"), value(main, named, "OverHang"), np.radians(value(main, named, "ShftTilt"))
+            value(main, named, "Twr2Shft"),
+            value(main, named, "OverHang") - undersling,
+            np.radians(value(main, named, "ShftTilt")),
         ),
         yaw=yaw,
         drivetrain=drivetrain,
         gravity=gravity,
+        teeter=hinge,
     )
     notes = (
         GROUND,
@@ -87,13 +99,20 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
         f"generator {'free (GenDOF)' if free else 'locked (GenDOF is False)'}; shaft "
         + ("rigid (DrTrDOF is False)" if np.isinf(stiffness) else f"{stiffness:g} N m/rad (DTTorSpr)"),
         yaw_note,
+        *hinge_note,
         NO_TOWER_TORSION,
         *tower_notes,
         *(note for note in blade.source.notes if "are not part of the blade" not in note),
     )
-    unused_values = (*_unused(main, named), *tower_reader.of_tower(tower_text), *blade.source.unused)
+    unused_values = (
+        *_below(primary),
+        *_unused(main, named),
+        *_yaw_damping(servo),
+        *tower_reader.of_tower(tower_text),
+        *hubs.without_hinge(blade.source.unused, hinge),
+    )
     files = (*blade.source.files, tower_text.path, *servo)
-    speed = _number(main, "RotSpeed", 0.0) * np.pi / 30.0
+    speed = number_or(main, "RotSpeed", 0.0) * np.pi / 30.0
     return TurbineReading(turbine, Source(NAME, files, AXES, notes, unused_values), float(speed))
 
 
@@ -108,61 +127,49 @@ def _nacelle(main: Text, named: Named) -> np.ndarray:
             f"{main.at(named['nacyiner'][0])}: NacYIner: {about_yaw:g}: less than NacMass at its distance from the yaw axis, "
             f"{mass * (x**2 + y**2):g} kg m²: it is about the yaw axis; correct one"
         )
-    out = _body(mass, np.array([own, 0.0, 0.0]), np.array([z, -y, x]))
-    out[:3, :3] += _number(main, "YawBrMass", 0.0) * np.eye(3)
+    out = body(mass, np.array([own, 0.0, 0.0]), np.array([z, -y, x]))
+    out[:3, :3] += number_or(main, "YawBrMass", 0.0) * np.eye(3)
     return out
-
-
-def _hub(main: Text, named: Named) -> np.ndarray:
-    """(6, 6) inertia of the hub at the rotor's apex, in the shaft's axes."""
-    moments = np.array([0.0, 0.0, value(main, named, "HubIner")])
-    return _body(value(main, named, "HubMass"), moments, np.array([0.0, 0.0, _number(main, "HubCM", 0.0)]))
-
-
-def _body(mass: float, moments: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """(6, 6) inertia of a body with these moments about its mass centre (3,), kg m²."""
-    out = np.diag([mass] * 3 + moments.tolist())
-    return np.ascontiguousarray(transformed(out, sp.pose(np.eye(3), centre)))
 
 
 def _yaw(primary: Text, main: Text, named: Named) -> tuple[float, str, tuple[Path, ...]]:
     """Stiffness of the yaw bearing, N m/rad, a note on it, and the file that states it."""
-    if not _flag(main, named, "YawDOF"):
+    if not flag(main, named, "YawDOF"):
         return np.inf, "yaw bearing locked (YawDOF is False)", ()
     servo = keys(primary).get("servofile")
     path = primary.path.parent / servo[1].replace("\\", "/") if servo else None
     if path is None or not os.path.isfile(path):
         return np.inf, "yaw bearing locked: its spring is in ServoDyn's file, which is missing", ()
     text = load(path)
-    stiffness = _number(text, "YawSpr", 0.0)
+    stiffness = number_or(text, "YawSpr", 0.0)
     if stiffness <= 0:
         return np.inf, f"yaw bearing locked: YawSpr in {path.name} is not positive", ()
     return stiffness, f"yaw spring {stiffness:g} N m/rad (YawSpr in {path.name})", (path,)
+
+
+def _below(primary: Text) -> tuple[Unused, ...]:
+    """Modules of the primary file that the turbine does not use."""
+    used = [name for name in MODULES if number_or(primary, name, 0.0)]
+    return unused(", ".join(used), [number_or(primary, name, 0.0) for name in used], "", primary.path, FLOATER)
+
+
+def _yaw_damping(servo: tuple[Path, ...]) -> tuple[Unused, ...]:
+    """The damping of the yaw bearing in ServoDyn's file."""
+    of = [(path, number_or(load(path), "YawDamp", 0.0)) for path in servo]
+    return tuple(u for path, damping in of for u in unused("YawDamp", [damping], "N m s/rad", path, UNDAMPED))
 
 
 def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
     """Non-zero quantities of the main file that the turbine does not use."""
     out: list[Unused] = []
     for name, unit in DAMPING.items():
-        out += unused(name, [_number(main, name, 0.0)], unit, main.path, "modes are undamped")
-    free = [name for name in PLATFORM if _flag(main, named, name)]
+        out += unused(name, [number_or(main, name, 0.0)], unit, main.path, UNDAMPED)
+    free = [name for name in PLATFORM if flag(main, named, name)]
     if free:
         out += unused(", ".join(free), [1.0] * len(free), "", main.path, FLOATER)
-        for name, unit in (("PtfmMass", "kg"), ("PtfmRIner", "kg m²"), ("PtfmPIner", "kg m²"), ("PtfmYIner", "kg m²")):
-            out += unused(name, [_number(main, name, 0.0)], unit, main.path, FLOATER)
-    out += unused("NacYaw", [_number(main, "NacYaw", 0.0)], "deg", main.path, "the nacelle faces the wind")
-    if _flag(main, named, "Furling"):
+        for name, unit in INERTIA.items():
+            out += unused(name, [number_or(main, name, 0.0)], unit, main.path, FLOATER)
+    out += unused("NacYaw", [number_or(main, "NacYaw", 0.0)], "deg", main.path, "the nacelle faces the wind")
+    if flag(main, named, "Furling"):
         out += unused("Furling", [1.0], "", main.path, "furling is not included")
     return tuple(out)
-
-
-def _number(text: Text, name: str, otherwise: float) -> float:
-    """The finite number under a name, or another one."""
-    line = keys(text).get(name.lower())
-    out = number(line[1]) if line else None
-    return out if out is not None and np.isfinite(out) else otherwise
-
-
-def _flag(text: Text, named: Named, name: str) -> bool:
-    line = named.get(name.lower())
-    return line is not None and line[1].lower().strip(".") in ("true", "t")

@@ -167,7 +167,8 @@ def test_springs_act_in_their_directions(tmp_path: Path) -> None:
     [
         ("[hub]\nmass = 3000.0\ninertia = 2000.0\ncentre = 0.1\n", "", "hub: missing"),
         ("overhang", "overhung", "overhung: unknown key"),
-        ('blade = "blade.dat"', 'blade = "blade.dat"\nblades = 2', "give 3 or more"),
+        ('blade = "blade.dat"', 'blade = "blade.dat"\nblades = 1', ">= 2"),
+        ("[hub]", "[hub]\nteeter = {undersling = 0.1}", "with 3 blades: only a hub of two teeters"),
         ('file = "tower.dat"', "stations = [0.0, 30.0]", "tower.mass: missing"),
         ('file = "tower.dat"', 'file = "tower.dat"\nmass = [1.0]', "leave one out"),
         ("height = 30.0", "height = 30.0\nsupport = {stiffness = [[1.0]]}", "6 rows of 6"),

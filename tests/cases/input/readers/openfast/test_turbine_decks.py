@@ -66,9 +66,18 @@ def test_a_deck_is_a_turbine(tmp_path: Path) -> None:
     )
     assert result.nacelle[3, 3] == pytest.approx(20000.0)  # about the yaw axis, as given
     unused = " ".join(str(u) for u in read.source.unused)
-    for damping in ("DTTorDmp", "TwrFADmp"):  # stated, each in one line
+    for damping in ("DTTorDmp", "TwrFADmp", "YawDamp"):  # stated, each in one line
         assert [str(u).endswith(": modes are undamped") for u in read.source.unused if damping in u.name] == [True]
     assert "PtfmMass" not in unused
+    assert "CompSub" not in unused
+
+
+def test_modules_under_the_tower_are_not_used(tmp_path: Path) -> None:
+    path = deck(tmp_path)
+    path.write_text(path.read_text() + "1 CompHydro\n1 CompSub\n0 CompMooring\n")
+    assert str(turbine.read(path).source.unused[0]).startswith(
+        "not used: CompHydro, CompSub (largest 1, small.fst): rigid ground"
+    )
 
 
 def test_a_generator_or_a_yaw_bearing_as_the_deck_says(tmp_path: Path) -> None:
@@ -80,11 +89,11 @@ def test_a_generator_or_a_yaw_bearing_as_the_deck_says(tmp_path: Path) -> None:
     assert "1st edge collective" not in names[:6]
 
 
-def test_a_deck_without_its_tower_or_with_two_blades_is_no_turbine(tmp_path: Path) -> None:
+def test_a_deck_without_its_tower_or_with_one_blade_is_no_turbine(tmp_path: Path) -> None:
     path = deck(tmp_path)
     main = tmp_path / "main.dat"
     text = main.read_text()
-    main.write_text(text.replace("3 NumBl", "2 NumBl"))
+    main.write_text(text.replace("3 NumBl", "1 NumBl"))
     assert not turbine.is_turbine(path)
     main.write_text(text)
     (tmp_path / "tower.dat").unlink()

@@ -1,0 +1,89 @@
+"""The hub in ElastoDyn's main file: its inertia, and the teeter hinge of two blades.
+
+Source: J. Jonkman, M. Buhl, *FAST User's Guide*, NREL/EL-500-38230, 2005; ElastoDyn's source code.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+
+from .....core.space import spatial as sp
+from .....core.space.inertia import transformed
+from .....core.turbine.turbine import Teeter
+from ...errors import CaseError
+from ..source import Unused
+from ..text import Text, keys, number, value
+from .elastodyn_unused import TEETER
+
+Named = dict[str, tuple[int, str]]
+
+
+def hub(main: Text, named: Named) -> np.ndarray:
+    """(6, 6) inertia of the hub at the rotor's apex, in the shaft's axes."""
+    moments = np.array([0.0, 0.0, value(main, named, "HubIner")])
+    return body(value(main, named, "HubMass"), moments, np.array([0.0, 0.0, number_or(main, "HubCM", 0.0)]))
+
+
+def hub_of_two(main: Text, named: Named, undersling: float) -> np.ndarray:
+    """(6, 6) inertia of the hub of two blades at the rotor's apex, in the shaft's axes.
+
+    HubIner is about the teeter hinge, and the moment about the shaft is the same about the mass centre, as of a cylinder along
+    the blades (ElastoDyn's source code, ``Hubg1Iner``); files with HubIner_Teeter give the two apart.
+    """
+    mass, centre = value(main, named, "HubMass"), number_or(main, "HubCM", 0.0)
+    of_shaft, name = value(main, named, "HubIner"), "HubIner"
+    if "hubiner_teeter" in named:
+        name = "HubIner_Teeter"
+    across = value(main, named, name) - mass * (undersling - centre) ** 2
+    if across < 0:
+        raise CaseError(
+            f"{main.at(named[name.lower()][0])}: {name}: less than HubMass at its distance from the teeter hinge, "
+            f"{mass * (undersling - centre) ** 2:g} kg m²: it is about the hinge; correct one"
+        )
+    moments = np.array([0.0, across, across if name == "HubIner" else of_shaft])
+    return body(mass, moments, np.array([0.0, 0.0, centre]))
+
+
+def teeter(main: Text, named: Named) -> tuple[Teeter | None, float, tuple[str, ...]]:
+    """The teeter hinge of two blades, the undersling, m, and a note.
+
+    The apex is upwind of the hinge by UndSling, and OverHang reaches to the hinge. A soft stop at 0 is a spring.
+    """
+    undersling = number_or(main, "UndSling", 0.0)
+    if not flag(main, named, "TeetDOF"):
+        return None, undersling, ("the hub does not teeter (TeetDOF is False)",)
+    if number_or(main, "Delta3", 0.0):
+        raise CaseError(
+            f"{main.at(named['delta3'][0])}: Delta3: {number_or(main, 'Delta3', 0.0):g}: only a hinge at right angles to the "
+            "blades is solved here; set it to 0, or TeetDOF to False"
+        )
+    soft = number_or(main, "TeetMod", 0.0) == 1 and number_or(main, "TeetSStP", 0.0) == 0
+    stiffness = number_or(main, "TeetSSSp", 0.0) if soft else 0.0
+    spring = f"a spring of {stiffness:g} N m/rad (TeetSSSp)" if stiffness else "no spring about its middle"
+    return Teeter(undersling, stiffness), undersling, (f"the hub teeters, with {spring} and without its damper",)
+
+
+def without_hinge(of_blade: tuple[Unused, ...], teeter: Teeter | None) -> tuple[Unused, ...]:
+    """What a blade does not use, with the hinge's data that a turbine of two blades uses left out."""
+    used = ("TeetDOF", "UndSling", "TeetMod", *(("TeetSSSp",) if teeter and teeter.stiffness else ()))
+    out = (u for u in of_blade if u.name not in used)
+    return tuple(replace(u, why="the hinge is linear and undamped") if u.name in TEETER else u for u in out)
+
+
+def body(mass: float, moments: np.ndarray, centre: np.ndarray) -> np.ndarray:
+    """(6, 6) inertia of a body with these moments about its mass centre (3,), kg m²."""
+    out = np.diag([mass] * 3 + moments.tolist())
+    return np.ascontiguousarray(transformed(out, sp.pose(np.eye(3), centre)))
+
+
+def number_or(text: Text, name: str, otherwise: float) -> float:
+    """The finite number under a name, or another one."""
+    line = keys(text).get(name.lower())
+    out = number(line[1]) if line else None
+    return out if out is not None and np.isfinite(out) else otherwise
+
+
+def flag(text: Text, named: Named, name: str) -> bool:
+    """Whether the value under a name is true; False if it is missing."""
+    line = named.get(name.lower())
+    return line is not None and line[1].lower().strip(".") in ("true", "t")
