@@ -13,12 +13,11 @@ from ..space.inertia import transformed
 from ..spectrum.mesh_solver import balance
 from ..steady.blade_state import Steady
 from ..threads import one_thread
-from ..tree.links import twists
 from . import component
 from .assumed import Assumed, motions
 from .component import Component
 from .rotor import turned_axes
-from .tower import Tower, standing, tower_mesh
+from .tower import Tower, base_energy, standing, tower_mesh
 from .turbine import Turbine
 
 Array = NDArray[np.float64]
@@ -72,17 +71,7 @@ class Machine:
 
     def base_energy(self, motion: NDArray[np.complex128]) -> Array:
         """(6, m) twice the energy of the base's stiffness in motions (t, m) of the tower, by direction; 0 if it is clamped."""
-        support = self.turbine.support
-        foot = len(support.free)
-        if not foot:
-            return np.zeros((6, motion.shape[1]))
-        axes = self.tower_state.shape.nodes[foot, :3, :3]
-        own = twists(self.tower_state.pencil.links, self.tower.vectors)[:, foot - 1, :6].reshape(-1, 2, 3)
-        moved = (own @ axes.T).reshape(-1, 6).T @ motion
-        K = support.finite
-        total = np.einsum("im,ij,jm->m", moved.conj(), K, moved).real
-        parts = np.diagonal(K)[:, None] * np.abs(moved) ** 2
-        return parts * (total / np.maximum(parts.sum(0), np.finfo(float).tiny))
+        return base_energy(self.turbine.support, self.tower_state, self.tower.vectors, motion)
 
 
 def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Assumed | None = None) -> Machine:

@@ -5,6 +5,7 @@ of the link at whose end they act, in the ground's axes, about the state of rest
 floater is in balance where its stiffness is stated, and the force that carries the weight stays vertical.
 """
 
+from collections import Counter
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -21,6 +22,7 @@ from ..spectrum.lanczos import lanczos
 from ..spectrum.mesh_solver import balance
 from ..steady.blade_state import Steady
 from ..threads import one_thread
+from ..tree.links import twists
 from ..tree.mode_shapes import mode_shapes, sampling_matrix
 from ..tree.pencil import TreePencil, linearize, on_nodes
 
@@ -37,6 +39,9 @@ POINTS = 4
 
 SAME = 1e-9
 """Heights closer than this fraction of the length coincide."""
+
+PLATFORM = ("heave", "sway", "surge", "yaw", "pitch", "roll")
+"""Names of the base's motions along and about x (up), y and z (downwind)."""
 
 NAMES = ("fore-aft", "side-side", "torsion", "axial")
 """Names of a tower's motions in the order of ``participation.FAMILIES``."""
@@ -98,8 +103,8 @@ class TowerModes:
 
     Attributes:
         frequencies: (m,) rad/s, ascending.
-        names: (m,) as ``1st fore-aft``.
-        confidence: (m,) part of the kinetic energy in the motion that names each mode.
+        names: (m,) as ``1st fore-aft``; ``platform surge`` if more than half of the elastic energy is that of the base.
+        confidence: (m,) part of the kinetic energy in the motion that names each mode, or of the elastic energy in the base.
         uncertainty: (m,) relative numerical uncertainty.
     """
 
@@ -117,24 +122,47 @@ def tower_modes(tower: Tower, count: int = 6) -> TowerModes:
         SteadyStateError, UnstableError: the tower does not carry the weight.
     """
     with one_thread():
-        coarse, fine = (_solved(tower, elements, count) for elements in (ELEMENTS // 2, ELEMENTS))
+        coarse, _ = _solved(tower, ELEMENTS // 2, count)
+        fine, base = _solved(tower, ELEMENTS, count)
     fractions = participation.participation(fine, tower.beam)
-    families = fractions.argmax(1)
-    occurrences = [0] * len(NAMES)
-    names = []
-    for family in families.tolist():
-        occurrences[family] += 1
-        names.append(f"{ordinal(occurrences[family])} {NAMES[family]}")
+    confidence, names = fractions.max(1), []
+    occurrences: Counter[str] = Counter()
+    for k, family in enumerate(fractions.argmax(1).tolist()):
+        if base[:, k].sum() > 0.5:
+            confidence[k] = base[:, k].sum()
+            names.append(f"platform {PLATFORM[int(base[:, k].argmax())]}")
+            continue
+        occurrences[NAMES[family]] += 1
+        names.append(f"{ordinal(occurrences[NAMES[family]])} {NAMES[family]}")
     change = SAFETY * np.abs(coarse.frequencies / fine.frequencies - 1.0)
-    return TowerModes(fine.frequencies, tuple(names), fractions.max(1), change)
+    return TowerModes(fine.frequencies, tuple(names), confidence, change)
 
 
-def _solved(tower: Tower, elements: int, count: int) -> Modes:
+def _solved(tower: Tower, elements: int, count: int) -> tuple[Modes, Array]:
+    """The modes, and the part (6, m) of their elastic energy in each direction of the base's stiffness."""
     mesh = tower_mesh(tower.beam, tower.support, elements)
     state = standing(mesh, tower, elements)
     lowest = lanczos(state.pencil, count)
     shapes = mode_shapes(mesh, state.shape, on_nodes(state.pencil, lowest.vectors))
-    return Modes(0.0, lowest.frequencies, shapes, mesh.elements)
+    motions = lowest.vectors.T
+    phase = motions[np.arange(len(motions)), np.abs(motions).argmax(1)]
+    real = np.real(motions * (np.abs(phase) / phase)[:, None])  # of unit elastic energy
+    base = base_energy(tower.support, state, real, np.eye(len(real), dtype=complex))
+    return Modes(0.0, lowest.frequencies, shapes, mesh.elements), base
+
+
+def base_energy(support: Support, state: Steady, vectors: Array, motions: NDArray[np.complex128]) -> Array:
+    """(6, m) twice the energy of the base's stiffness in sums (r, m) of vectors (r, dn), by direction; 0 if it is clamped."""
+    foot = len(support.free)
+    if not foot:
+        return np.zeros((6, motions.shape[1]))
+    axes = state.shape.nodes[foot, :3, :3]
+    own = twists(state.pencil.links, vectors)[:, foot - 1, :6].reshape(-1, 2, 3)
+    moved = (own @ axes.T).reshape(-1, 6).T @ motions
+    K = support.finite
+    total = np.einsum("im,ij,jm->m", moved.conj(), K, moved).real
+    parts = np.diagonal(K)[:, None] * np.abs(moved) ** 2
+    return parts * (total / np.maximum(parts.sum(0), np.finfo(float).tiny))
 
 
 def ordinal(number: int) -> str:

@@ -23,7 +23,7 @@ from . import stations
 from .assembly import Assembled, assemble
 from .machine import Machine
 from .motion import Motion, displacements, flattened
-from .tower import NAMES, ordinal
+from .tower import NAMES, PLATFORM, ordinal
 from .two_blades import periodic_modes
 
 Array = NDArray[np.float64]
@@ -39,9 +39,6 @@ RIGID = 1e-6
 """Frequency, relative to the lowest of the blade, below which a mode is the rotor that turns freely."""
 
 BLADE_NAMES = ("flap", "edge", "torsion", "axial")
-
-PLATFORM = ("heave", "sway", "surge", "yaw", "pitch", "roll")
-"""Names of the base's motions along and about x (up), y and z (downwind)."""
 
 TURNS = "rotor turns freely"
 SHAFT = "drivetrain torsion"

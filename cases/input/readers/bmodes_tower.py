@@ -35,6 +35,9 @@ CLAMPED, FREE, LATERAL = 1, 2, 3
 JUMP = 1e-7
 """Distance of two sections between which properties jump, relative to the height."""
 
+ASYMMETRY = 1e-3
+"""Largest difference of entries of a matrix across the diagonal, relative to the diagonal entries."""
+
 LATERAL_FREE = (1, 2, 4, 5)
 """Directions of our axes that hub_conn = 3 leaves to the springs of the base."""
 
@@ -76,7 +79,7 @@ def read(path: Path) -> tuple[Tower, Source]:
         )
     except BladeError as error:
         raise CaseError(f"{rows.text.path}: {error}") from error
-    base, base_note = _base(main, named, draft)
+    base, mass, base_note = _base(main, named, draft)
     wires = _wires(main, named, height)
     notes = [
         base_note,
@@ -91,7 +94,7 @@ def read(path: Path) -> tuple[Tower, Source]:
     if wires:
         heights = ", ".join(f"{h:g} m" for h, _ in wires)
         notes.append(f"guy wires at {heights}: their horizontal stiffness")
-    support = Support(base, wires, _soil(main, named, height))
+    support = Support(base, wires, _soil(main, named, height), mass)
     try:
         check_tower(height, support)
     except ValueError as error:
@@ -117,31 +120,60 @@ def _top(main: Text, named: Named) -> Array:
     return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
 
 
-def _base(main: Text, named: Named, draft: float) -> tuple[Array | None, str]:
-    """Stiffness of the base, and a note on it."""
+def _base(main: Text, named: Named, draft: float) -> tuple[Array | None, Array | None, str]:
+    """Stiffness and inertia of the base, and a note on them."""
     kind, at = whole(main, named, "hub_conn"), main.at(named["hub_conn"][0])
     if kind == CLAMPED:
-        return None, "clamped at the base (hub_conn = 1)"
-    if kind != LATERAL:
-        raise CaseError(
-            f"{at}: hub_conn: {kind}: a tower here stands on the ground; give 1 (clamped) or 3 (on springs)"
-        )
+        return None, None, "clamped at the base (hub_conn = 1)"
+    if kind not in (FREE, LATERAL):
+        raise CaseError(f"{at}: hub_conn: {kind}: give 1 (clamped), 2 (free on a platform) or 3 (on springs)")
     below = value(main, named, "ref_msl") - draft if "ref_msl" in named else 0.0
-    K = _matrix(main, "hydro_K") + _matrix(main, "mooring_K")
-    raised = transformed(in_axes(K, BEAMDYN), sp.pose(np.eye(3), np.array([-below, 0.0, 0.0])))
+    K = _symmetric(main, "hydro_K + mooring_K", _matrix(main, "hydro_K") + _matrix(main, "mooring_K"))
+    raised = _raised(K, below)
+    inertia = _raised(_symmetric(main, "hydro_M", _matrix(main, "hydro_M")), below) + _platform(main, named, draft)
+    mass = inertia if inertia.any() else None
+    if kind == FREE:
+        return raised, mass, "base on a platform (hydro_K + mooring_K; its inertia and hydro_M), free in all directions"
     base = np.diag([np.inf] * 6)
     base[np.ix_(LATERAL_FREE, LATERAL_FREE)] = raised[np.ix_(LATERAL_FREE, LATERAL_FREE)]
-    return base, "base on springs (hydro_K + mooring_K), clamped axially and in torsion (hub_conn = 3)"
+    return base, mass, "base on springs (hydro_K + mooring_K), clamped axially and in torsion (hub_conn = 3)"
 
 
-def _matrix(main: Text, name: str) -> Array:
-    """The 6 rows of 6 numbers below the line that ends in a name."""
+def _raised(matrix: Array, below: float) -> Array:
+    """A matrix (6, 6) in BModes' axes at a point below the base, at the base in ours."""
+    return np.ascontiguousarray(transformed(in_axes(matrix, BEAMDYN), sp.pose(np.eye(3), np.array([-below, 0.0, 0.0]))))
+
+
+def _platform(main: Text, named: Named, draft: float) -> Array:
+    """(6, 6) inertia of the platform at the base, from its moments about its mass centre."""
+    mass = value(main, named, "mass_pform") if "mass_pform" in named else 0.0
+    own = np.zeros((6, 6))
+    own[:3, :3] = mass * np.eye(3)
+    own[3:, 3:] = _matrix(main, "i_matrix_pform", 3)
+    return _raised(own, value(main, named, "cm_pform") - draft if mass else 0.0)
+
+
+def _symmetric(main: Text, name: str, matrix: Array) -> Array:
+    """The mean of a matrix and its transpose, which differ in published files by digits of a linearisation.
+
+    Raises:
+        CaseError: they differ by more than ``ASYMMETRY``.
+    """
+    size = np.sqrt(np.abs(np.diagonal(matrix)))
+    apart = np.abs(matrix - matrix.T).max()
+    if (np.abs(matrix - matrix.T) > ASYMMETRY * np.outer(size, size)).any():
+        raise CaseError(f"{main.path}: {name}: entries differ by {apart:g} from those across the diagonal; correct one")
+    return 0.5 * (matrix + matrix.T)
+
+
+def _matrix(main: Text, name: str, size: int = 6) -> Array:
+    """The rows of as many numbers below the line that contains a name."""
     head = next((k for k, line in enumerate(main.lines) if f"({name})" in line), None)
     if head is None:
-        return np.zeros((6, 6))
-    rows = [leading(line)[:6] for line in main.lines[head + 1 : head + 7]]
-    if len(rows) < 6 or any(len(row) < 6 for row in rows) or not np.isfinite(rows).all():
-        raise CaseError(f"{main.at(head)}: {name}: give 6 rows of 6 finite numbers below this line")
+        return np.zeros((size, size))
+    rows = [leading(line)[:size] for line in main.lines[head + 1 : head + 1 + size]]
+    if len(rows) < size or any(len(row) < size for row in rows) or not np.isfinite(rows).all():
+        raise CaseError(f"{main.at(head)}: {name}: give {size} rows of {size} finite numbers below this line")
     return np.array(rows)
 
 
@@ -182,11 +214,7 @@ def _soil(main: Text, named: Named, height: float) -> Array | None:
 
 
 def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
-    out: list[Unused] = []
-    why = "masses of a platform and of water are not included"
-    if "mass_pform" in named:
-        out += unused("mass_pform", [value(main, named, "mass_pform")], "kg", main.path, why)
-    out += unused("hydro_M", _matrix(main, "hydro_M").ravel(), "kg, kg m, kg m²", main.path, why)
-    if "n_secs_m_distr" in named:
-        out += unused("distr_m", [value(main, named, "n_secs_m_distr")], "sections", main.path, why)
-    return tuple(out)
+    if "n_secs_m_distr" not in named:
+        return ()
+    why = "added mass along the tower is not included"
+    return unused("distr_m", [value(main, named, "n_secs_m_distr")], "sections", main.path, why)

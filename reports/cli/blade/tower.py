@@ -64,7 +64,7 @@ def _sheet(name: str, solved: TowerModes) -> Sheet:
             strict=True,
         )
     ]
-    note = "The confidence is the part of the kinetic energy in the motion that names a mode."
+    note = "The confidence is the part of the kinetic energy in the motion that names a mode, of a platform of the elastic."
     return Sheet(f"{name}: natural frequencies", ("mode", "Hz", "± relative", "confidence"), tuple(rows), note)
 
 

@@ -1,9 +1,11 @@
 """BModes' files of a tower: the certification tests 3 and 4, and a base on springs."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 import pytest
+import scipy.linalg
 
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
@@ -125,8 +127,8 @@ def test_a_base_on_springs_below_the_sea(tmp_path: Path) -> None:
     """mooring_K is about a point 5 m below the base: lifted there, its translations tilt with it."""
     lateral, rocking = 2e9, 3e11
     K = np.diag([lateral, lateral, 0.0, rocking, rocking, 0.0])
-    more = f"10. draft\n15. ref_msl\n7. mass_pform\n{matrix('hydro_K', np.zeros((6, 6)))}{matrix('mooring_K', K)}"
-    tower, source = towers.read(write(tmp_path, more=more, kind=3))
+    more = f"10. draft\n15. ref_msl\n{matrix('hydro_K', np.zeros((6, 6)))}{matrix('mooring_K', K)}"
+    tower, _ = towers.read(write(tmp_path, more=more, kind=3))
     assert tower.beam.length == pytest.approx(HEIGHT + 10.0)
     base = tower.support.base
     assert base is not None
@@ -135,13 +137,73 @@ def test_a_base_on_springs_below_the_sea(tmp_path: Path) -> None:
     assert base[4, 4] == pytest.approx(rocking + 25.0 * lateral)
     assert base[2, 4] == pytest.approx(5.0 * lateral)
     assert base[1, 5] == pytest.approx(-5.0 * lateral)
-    assert "mass_pform" in str(source.unused[0])
+    assert tower.support.mass is None
     assert tower_modes(tower, 1).frequencies[0] > 0
+
+
+SPAR_K = np.diag([4e4, 4e4, 3e5, 2e9, 2e9, 1e8])
+SPAR_K[0, 4] = SPAR_K[4, 0] = -2.8e6
+SPAR_K[1, 3], SPAR_K[3, 1] = 2.8e6, 2.803e6  # as in a linearisation
+
+
+def platform(K: np.ndarray) -> str:
+    """A platform with its base 10 m above the sea, its mass centre 80 m and its point of reference 2 m below."""
+    added = np.diag([7e6, 7e6, 2e5, 4e10, 4e10, 0.0])
+    own = "6x6 of 3 rows (i_matrix_pform):\n4e9 0. 0.\n0. 4e9 0.\n0. 0. 1.6e8\n"
+    sea = "-10. draft\n80. cm_pform\n7e6 mass_pform\n2. ref_msl\n"
+    return f"{sea}{own}{matrix('hydro_M', added)}{matrix('hydro_K', 0 * K)}{matrix('mooring_K', K)}"
+
+
+def test_a_tower_on_a_platform(tmp_path: Path) -> None:
+    """The lowest modes are those of a rigid body of the same inertia, of which the tower is a small part; source: BldVib."""
+    tower, source = towers.read(write(tmp_path, more=platform(SPAR_K), kind=2))
+    assert tower.beam.length == pytest.approx(HEIGHT - 10.0)
+    mass, base = tower.support.mass, tower.support.base
+    assert mass is not None
+    assert base is not None
+    assert np.diagonal(mass)[:3] == pytest.approx([7.2e6, 14e6, 14e6])  # ours: up, to starboard, downwind
+    assert mass[4, 4] == pytest.approx(4e9 + 7e6 * 90.0**2 + 4e10 + 7e6 * 12.0**2)
+    assert mass[2, 4] == pytest.approx(90.0 * 7e6 + 12.0 * 7e6)
+    assert base[1, 5] == base[5, 1]
+    stiff = replace(tower, beam=replace(tower.beam, stiffness=1e4 * tower.beam.stiffness, tip_mass=1e-6 * np.eye(6)))
+    light = replace(stiff, beam=replace(stiff.beam, mass=1e-6 * stiff.beam.mass))
+    found = tower_modes(light, 6)
+    exact = np.sqrt(scipy.linalg.eigh(base, mass, eigvals_only=True))
+    np.testing.assert_allclose(found.frequencies, exact, rtol=1e-4)
+    assert sorted(found.names) == [f"platform {n}" for n in ("heave", "pitch", "roll", "surge", "sway", "yaw")]
+    names = tower_modes(tower, 8).names
+    assert names[:6] == found.names
+    assert names[6:] == ("1st side-side", "1st fore-aft")
+    assert not source.unused
+    assert "free in all directions" in " ".join(source.notes)
+    K = SPAR_K.copy()
+    K[3, 1] = 3.5e6
+    with pytest.raises(CaseError, match="hydro_K \\+ mooring_K: entries differ by 700000 from those across"):
+        towers.read(write(tmp_path, more=platform(K), kind=2))
+
+
+@pytest.mark.slow
+def test_pybmodes_has_the_same_modes_on_a_platform(tmp_path: Path) -> None:
+    """The two agree as far as BModes' mesh, whose elements have the properties at their middle."""
+    models = pytest.importorskip("pybmodes.models")
+    example = "sample_inputs/reference_turbines/07_nrel5mw_oc3hywind_spar/07_nrel5mw_oc3hywind_spar_tower.bmi"
+    path = Path(models.__file__).parent.parent / "_examples" / example
+    if not path.is_file():
+        pytest.skip("this pybmodes has no example of a spar")
+    found = tower_modes(towers.read(path)[0], 8)
+    other = np.array(models.Tower(path).run(n_modes=8).frequencies)
+    np.testing.assert_allclose(found.frequencies / (2 * np.pi), other, rtol=3e-4)
+    assert found.names[:3] == ("platform surge", "platform sway", "platform heave")
 
 
 @pytest.mark.parametrize(
     ("kind", "more", "said"),
-    [(2, "", "hub_conn: 2"), (3, "", "moves freely"), (1, WIRES.replace("6 10", "6 99"), "node_attach: 99")],
+    [
+        (2, "", "moves freely"),
+        (4, "", "hub_conn: 4"),
+        (3, "", "moves freely"),
+        (1, WIRES.replace("6 10", "6 99"), "node_attach: 99"),
+    ],
 )
 def test_what_is_not_a_tower_on_the_ground_is_refused(tmp_path: Path, kind: int, more: str, said: str) -> None:
     with pytest.raises(CaseError, match=said):
