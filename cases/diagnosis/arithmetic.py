@@ -117,7 +117,7 @@ def _orders(given: Array, reference: Array, labels: Sequence[Label], every: Sequ
 
 
 def _taken(every: Sequence[Array], places: NDArray[np.int64]) -> Array:
-    """(S, M) the frequencies at some places of all; nan beyond the last."""
+    """(S, M) frequencies with these indices among all; nan beyond the last."""
     out = np.full((len(every), len(places)), np.nan)
     for row, values in zip(out, every, strict=True):
         inside = (places >= 0) & (places < len(values))

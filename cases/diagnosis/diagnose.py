@@ -186,9 +186,8 @@ def _names(problem: Problem, reference: Array) -> list[list[str]]:
     ):
         line = []
         for value in reference[row]:
-            known = spectrum is not None and np.isfinite(value)
             line.append(
-                named[int(np.abs(spectrum.frequencies - value).argmin())] if known and spectrum is not None else ""
+                named[int(np.abs(spectrum.frequencies - value).argmin())] if spectrum and np.isfinite(value) else ""
             )
         out.append(line)
     return out

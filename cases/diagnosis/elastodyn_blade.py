@@ -1,4 +1,4 @@
-"""A blade as ElastoDyn integrates it: point masses in the middle of equal elements, shapes summed up from their curvatures.
+"""A blade as ElastoDyn integrates it: point masses in the middle of equal elements, shapes integrated from their curvatures.
 
 In the middle of each element, the curvature of a shape is that of its polynomial in the direction of the section. Rotations,
 deflections and the shortening that a bent blade's points make towards the root follow by the rule of the middle, so that they

@@ -154,7 +154,7 @@ def _restricted(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -
 
 
 def _turned_force(model: Model, mesh: Mesh, shape: Shape, motions: Array, omega: float) -> Array:
-    """(k, k) work on motions (k, n, d) of the centrifugal forces on the nodes, turned with each of the motions."""
+    """(k, k) work of the centrifugal forces on the nodes, turned by one motion (k, n, d), on another."""
     mass = discretize(model.blade, mesh.elements, "half_end").lumps[1:, 0, 0]
     force = mass[:, None] * omega**2 * shape.nodes[1:, :3, 3] * np.array([1.0, 1.0, 0.0])
     local = np.einsum("nba,nb->na", shape.nodes[1:, :3, :3], force)
@@ -174,7 +174,7 @@ def _lowest(mesh: Mesh, count: int) -> Array:
 
 
 def _static(mesh: Mesh) -> Array:
-    """(6 n, n d) for each element the six relative motions of its ends; inner coordinates have the least elastic energy."""
+    """(6 n, n d) six relative motions of the ends of each element; inner coordinates have the least elastic energy."""
     K = pencil.linearize(mesh, pencil.undeformed(mesh), 0.0, np.zeros(3), ALL_EFFECTS).K
     n, d = len(K), K.shape[1] - 6
     motions = np.tile(np.eye(6, d), (n, 1, 1))
@@ -185,7 +185,7 @@ def _static(mesh: Mesh) -> Array:
 
 
 def _assumed(mesh: Mesh, model: Model, assumed: AssumedShapes, speeds: Sequence[float]) -> list[Modes | None]:
-    """Modes by ElastoDyn's equations about the undeformed blade; all that the shapes have."""
+    """Modes by ElastoDyn's equations about the undeformed blade, as many as there are shapes."""
     shape = pencil.undeformed(mesh)
     try:
         basis = restricted_motions(model.blade, mesh, field_of(model.blade, assumed.shapes))

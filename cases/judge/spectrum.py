@@ -81,12 +81,12 @@ def of_mechanism(modes: MechanismModes) -> Spectrum:
 
 
 def of_blades(answers: Iterable[Modes | Failure]) -> list[Answer]:
-    """The spectra of a code's answers."""
+    """The spectra of a code's answers on a blade."""
     return [answer if isinstance(answer, Failure) else of_blade(answer) for answer in answers]
 
 
 def of_mechanisms(answers: Iterable[MechanismModes | Failure]) -> list[Answer]:
-    """The spectra of a code's answers."""
+    """The spectra of a code's answers on a mechanism."""
     return [answer if isinstance(answer, Failure) else of_mechanism(answer) for answer in answers]
 
 

@@ -63,7 +63,7 @@ class Witness:
 
 
 def witnesses(run: Run, case: str) -> list[Witness]:
-    """All witnesses for one blade, in the order of the run, without core's own discretisation."""
+    """All witnesses for a blade, in the order of the run, without core's own discretisation."""
     origins = {o.code: o for o in run.origins if o.case == case}
     columns: dict[str, list[Cell]] = {}
     for cell in run.cells:

@@ -120,7 +120,10 @@ def _curve(blade: Stations, kinks: tuple[float, ...], s: Array) -> tuple[Array, 
 
 
 def _sum(bodies: Array, axes: Array, position: Array, rotary: bool) -> tuple[float, Array, Array]:
-    """Of bodies with inertia (n, 6, 6) in axes (n, 3, 3) about points (n, 3): ∫ r rᵀ dm is W = m p pᵀ + p cᵀ + c pᵀ + S."""
+    """Mass, first moments and ∫ r rᵀ dm of bodies with inertia (n, 6, 6) in axes (n, 3, 3) about points p (n, 3).
+
+    With the first moments c and S = ∫ r rᵀ dm about p, ∫ r rᵀ dm = m p pᵀ + p cᵀ + c pᵀ + S.
+    """
     m = bodies[:, 0, 0]
     own = np.stack([bodies[:, 2, 4] * -1, -bodies[:, 0, 5], bodies[:, 0, 4]], axis=1)  # m times the centre
     first = np.einsum("nij,nj->ni", axes, own)

@@ -28,25 +28,31 @@ class Moments:
     second: Array
 
     def moved(self, axes: Array, place: Array) -> "Moments":
-        """In axes in which the body's own are ``axes`` (3, 3) at ``place`` (3,)."""
+        """The moments in other axes, in which the body has its axes ``axes`` (3, 3) and its origin at ``place`` (3,)."""
         first = axes @ self.first
         cross = np.outer(place, first)
         second = axes @ self.second @ axes.T + cross + cross.T + self.mass * np.outer(place, place)
         return Moments(self.mass, first + self.mass * place, second)
 
     def __add__(self, other: "Moments") -> "Moments":
-        """Both bodies, in the same axes."""
+        """The moments of two bodies together, given in the same axes."""
         return Moments(self.mass + other.mass, self.first + other.first, self.second + other.second)
 
     @property
     def inertia(self) -> Array:
-        """(3,) about the axes."""
+        """(3,) moments of inertia about the axes, kg m²."""
         return np.asarray(np.trace(self.second) - np.diagonal(self.second), float)
 
 
 @dataclass(frozen=True)
 class Weighed:
-    """What a turbine weighs: ``rotor``, kg m², is about the shaft, without the generator."""
+    """Mass and inertia of a turbine.
+
+    Attributes:
+        whole: moments of the whole turbine.
+        rotor: moment of inertia about the shaft without the generator, kg m².
+        height: of the mass centre above the base, m.
+    """
 
     whole: Moments
     rotor: float

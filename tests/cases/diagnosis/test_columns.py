@@ -48,7 +48,7 @@ def test_only_failures_and_added_files_are_due() -> None:
 
 
 def test_the_terminal_and_the_report_show_it() -> None:
-    one = Diagnosed(
+    first = Diagnosed(
         "beam",
         "code",
         True,
@@ -56,12 +56,12 @@ def test_the_terminal_and_the_report_show_it() -> None:
         ("a", "b"),
         ("flapwise 1: …",),
     )
-    run = Run((), diagnoses=(one,))
+    run = Run((), diagnoses=(first,))
     assert diagnoses.lines(run) == ["code: as Southwell's own solver without hub radius (remains 0.0002 %)."]
     (row,) = diagnoses.rows(run, "beam")
     assert row["most probable causes"] == "a; b"
     assert diagnoses.rows(run, "other") == []
-    both = replace(run, diagnoses=(one, replace(one, case="other")))
+    both = replace(run, diagnoses=(first, replace(first, case="other")))
     assert diagnoses.lines(both)[0].startswith("code, beam: ")
 
 

@@ -19,7 +19,7 @@ FEW = (
     Hypothesis("with precone reversed", lambda m, _: replace(m, blade=replace(m.blade, precone=-m.blade.precone))),
     Hypothesis("without softening", lambda m, _: replace(m, softening=0.0)),
 )
-PROBLEM = Problem(BLADE, (0.0, 10.0, 20.0), (1, 2, 3, 4), hypotheses={one.name: one for one in FEW})
+PROBLEM = Problem(BLADE, (0.0, 10.0, 20.0), (1, 2, 3, 4), hypotheses={kind.name: kind for kind in FEW})
 
 
 def test_chance_is_the_part_of_directions_within_a_cap() -> None:
@@ -57,17 +57,17 @@ def test_equal_and_random_numbers_have_no_cause() -> None:
     assert explain(PROBLEM, reference * (1 + 1e-5)).sentence.startswith("all frequencies agree within 0.001 %")
     rng = np.random.default_rng(3)
     altered = [explain(PROBLEM, reference * np.exp(0.01 * rng.standard_normal(reference.shape))) for _ in range(8)]
-    assert not any(one.cause for one in altered)
+    assert not any(diagnosis.cause for diagnosis in altered)
     assert altered[0].sentence.startswith("no known cause of ")
 
 
 def test_causes_that_the_numbers_do_not_tell_apart_are_stated_as_ties() -> None:
     near = Hypothesis("with a hub of 1 mm", lambda m, _: replace(m, blade=replace(m.blade, hub_radius=1e-3)))
-    problem = Problem(BLADE, (0.0, 20.0), (1, 2, 3, 4), hypotheses={one.name: one for one in (*FEW, near)})
+    problem = Problem(BLADE, (0.0, 20.0), (1, 2, 3, 4), hypotheses={kind.name: kind for kind in (*FEW, near)})
     wrong = replace(BLADE, hub_radius=0.0005)
     given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, problem.speeds, 40, 4)])
     diagnosis = explain(problem, given, 1e-4)
-    assert {one.changes[0][0] for one in (diagnosis.causes[0], *diagnosis.ties)} == {
+    assert {cause.changes[0][0] for cause in (diagnosis.causes[0], *diagnosis.ties)} == {
         "without hub radius",
         "with a hub of 1 mm",
     }
