@@ -17,7 +17,6 @@ from southwell.cases.solve.reference import references
 from southwell.core import multibody as mb
 from southwell.core import park2010, park2010_input, solve
 from southwell.core import park2010_modes as oracle
-from southwell.core.blade import without_rotary_inertia
 from southwell.core.mechanism.description import at_time
 from southwell.core.mechanism.joints import SCREWS, Kind, coordinate_names
 from southwell.core.modes import Modes
@@ -282,14 +281,6 @@ def test_the_solver_has_these_terms_on_closed_loops(name: str) -> None:
 BLADES: dict[str, tuple[Case, Variant]] = {
     variant.name: (case, variant) for case in library.load_all()[0].values() for variant in case.variants
 }
-
-
-@pytest.mark.slow
-def test_the_papers_table() -> None:
-    """Park et al. (2010), Table 1, column Present, to its last digit: 51 bodies, 50 elements."""
-    result = paper.paper_modes(without_rotary_inertia(PARK), 10.0, 50, 6)
-    tip = np.abs(result.shapes[:, -1])
-    assert [f"{f:.4g}" for f in result.frequencies[tip[:, 1] > tip[:, 2]][:3]] == ["11.71", "70.37", "189.7"]
 
 
 def test_reactions_of_a_blades_joints_do_no_work() -> None:
