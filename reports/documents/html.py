@@ -41,6 +41,7 @@ th, td { border: 1px solid var(--faint); padding: 3px 6px; text-align: left; ver
 th { background: var(--head); } td:first-child { font-weight: 500; }
 img { display: block; max-width: min(100%, 60rem); height: auto; margin: 1rem 0; }
 details { margin: 0.8rem 0; } summary { cursor: pointer; font-weight: 600; }
+@media screen and (max-width: 600px) { p:has(> img) { overflow-x: auto; } p > img { max-width: none; width: 38rem; } }
 pre { background: #f6f7f8; padding: 0.7rem; overflow-x: auto; } code { font-size: 0.92em; }
 @page { size: A4 landscape; margin: 12mm; @bottom-right { content: counter(page) " / " counter(pages); font-size: 8pt; } }
 @media print {

@@ -3,7 +3,7 @@
 from ...cases.judge.results import Control, Run
 from ...cases.judge.verdict import percent
 
-SHOWN = 3
+SHOWN = 1
 """Number of cells that a table names; the others are only counted."""
 
 

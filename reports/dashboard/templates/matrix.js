@@ -86,7 +86,13 @@ function controls() {
     table(["fault", "outcome", "largest change of a frequency", "where", "cases", "detected by"], DATA.controls.map((o) => row(o.name,
       make("td", { class: o.status === "detected" ? "v3" : o.status === "missed" ? "v0" : "v1" }, `${o.status === "detected" ? "✔" : o.status === "missed" ? "✘" : "?"} ${o.status}`),
       o.change === null && o.where ? "no such mode" : relative(o.change), o.where, make("td", { title: o.cases.join(", ") }, o.cases.length),
-      make("td", { class: "reason" }, o.detected_by.length ? `${o.detected_by.length}: ${o.detected_by.join(", ")}` : "none"))), { id: "controls" }));
+      make("td", { class: "reason", title: o.detected_by.join("\n") }, named(o.detected_by)))), { id: "controls" }));
+}
+
+// the first of the cells that detected a fault; the number of the others
+function named(cells) {
+  const more = cells.length - 1;
+  return more < 0 ? "none" : more ? `${cells[0]}; and ${more} more` : cells[0];
 }
 
 matrix();

@@ -2,18 +2,20 @@
 
 import re
 from collections.abc import Iterator
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
+from southwell.cases.judge.results import Control
 from southwell.cases.regression import history
 from southwell.reports.dashboard.data import page
 from southwell.reports.dashboard.write import write
 from southwell.reports.shared.summary import plus_minus
 
-from ...support import browsers
+from ...support import browsers, samples
 from ...support.dashboards import ABSENT, HOSTILE, LOST, WORSE, hostile, kept, run
 
 pytestmark = [browsers.needed, pytest.mark.slow]
@@ -326,6 +328,19 @@ def test_codes_and_negative_controls(tab: Any, site: Path) -> None:
     tab.goto((site / "run-2" / "index.html").as_uri())
     controls = tab.locator("#controls tbody tr").all_inner_texts()
     assert len(controls) == len({c.control for c in run().controls})
+
+
+def test_a_fault_that_many_cells_detect_takes_a_few_lines(tab: Any, tmp_path: Path) -> None:
+    """It took more than the height of the screen."""
+    cells = tuple(f"park-cantilever, exact-beam, edgewise (mode {k}), 10 rad/s: fail" for k in range(40))
+    control = Control(
+        "no hub radius", "solver", "the root is on the rotor's axis", "-3 %", "park-cantilever", 10.0, cells
+    )
+    seeded = replace(samples.run(), controls=(control,))
+    tab.goto(write({"run": seeded}, None, tmp_path).as_uri())
+    rows = tab.locator("#controls tbody tr")
+    assert rows.first.inner_text().endswith("and 39 more")
+    assert max(rows.evaluate_all("rows => rows.map((r) => r.getBoundingClientRect().height)")) < 80
 
 
 def test_the_history(tab: Any, site: Path) -> None:

@@ -143,11 +143,14 @@ def test_a_page_fits_a_telephone_also_with_long_names(tmp_path: Path) -> None:
     page = tmp_path / "page.html"
     digest = "4e" * 32
     text = (
-        f"# Diagram of {name}\n\n{name}: verdict\n\n- {name}\n\n|file|digest|\n|:--|:--|\n|name|{name}, `{digest}`|\n"
+        f"# Diagram of {name}\n\n{name}: verdict\n\n![diagram](wide.svg)\n\n- {name}\n\n"
+        f"|file|digest|\n|:--|:--|\n|name|{name}, `{digest}`|\n"
     )
+    (tmp_path / "wide.svg").write_text('<svg xmlns="http://www.w3.org/2000/svg" width="900" height="600"/>')
     page.write_text(html.render(text, tmp_path), encoding="utf-8")
     with browsers.browser() as running, browsers.tab(running) as tab:
         tab.set_viewport_size({"width": 390, "height": 800})
         tab.goto(page.as_uri())
         assert tab.evaluate("document.documentElement.scrollWidth") <= 390
         assert tab.evaluate("document.querySelector('.wide').scrollWidth") <= 390
+        assert tab.evaluate("document.querySelector('img').width") > 500, "the text of a figure is too small to read"
