@@ -146,7 +146,7 @@ def _pieces(blade: Blade, ends: Array) -> Array:
         first, last = k[i, c], k[i + 1, c]
         sizes = np.geomspace(first, last, int(abs(np.log(last / first)) / np.log(1.2)) + 2)
         a, b = blade.stations[i : i + 2]
-        inside.append(a + (b - a) * (sizes - first) / (last - first))
+        inside.append(a + (b - a) * (sizes[1:-1] - first) / (last - first))
     return np.unique(np.concatenate(inside))
 
 

@@ -7,7 +7,7 @@ import pytest
 
 from southwell.cases.judge.uncertainty import observed_order
 from southwell.core import solve
-from southwell.core.blade import TORSION, Blade, section_mass
+from southwell.core.blade import TORSION, Blade, section_mass, section_stiffness
 from southwell.core.modes import STATIONS
 from southwell.references.exudyn import hinged_segments, system
 from southwell.references.exudyn import tree as exudyn_tree
@@ -151,6 +151,15 @@ def test_the_mass_matrix_follows_from_the_jacobian():
     expected = np.einsum("e,eik,eil->kl", tree.mass, J[:, :3], J[:, :3])
     expected += np.einsum("eik,eij,ejl->kl", J[:, 3:], inertia, J[:, 3:])
     np.testing.assert_allclose(M, expected, atol=1e-12 * abs(M).max())
+
+
+def test_no_piece_ends_beyond_the_blade():
+    """The sum of the station before and the last interval is rounded to more than the length."""
+    stiffness = section_stiffness(*np.outer([1e9, 1e8, 1e9, 1e9], [1.0, 0.8, 0.3]))
+    mass = section_mass(np.array([100.0, 80.0, 50.0]))
+    for length in (51.4, 53.9):
+        blade = Blade("tapered", length * np.array([0.0, 0.3, 1.0]), stiffness, mass, np.zeros(3))
+        assert hinged_segments.hinge_segments(blade, 4, equal=True).ends[-1] == length
 
 
 def test_segments_have_the_mass_and_inertia_of_the_blade():
