@@ -90,7 +90,7 @@ class Line:
 
     def twisting(self) -> Array:
         """(q,) torsional flexibility of the sections, 1/(N m²)."""
-        return np.linalg.inv(self.stiffness)[:, TORSION, TORSION]
+        return np.asarray(np.linalg.inv(self.stiffness)[:, TORSION, TORSION], float)
 
 
 def line(htc: Text, name: str, body: bodies.Body) -> Line:

@@ -287,9 +287,13 @@ def _rigid(turbine: Turbine, split: Parts, lines: dict[str, Line], placed: Frame
         rigid_parts.append(
             RigidPart(name, "rotor" if name in common else "blade", move @ lines[name].compliance() @ move.T)
         )
-    made = machine(turbine)
-    lower = lowering(made, rigid_parts)
-    names = turbine_modes(made, 0.0, lower.shape[1]).names
+    try:
+        made = machine(turbine)
+        lower = lowering(made, rigid_parts)
+        names = turbine_modes(made, 0.0, lower.shape[1]).names
+    except ValueError as error:  # no steady state
+        flexible = ", ".join(part.name for part in rigid_parts)
+        return (f"taken as rigid, with all mass: {flexible}; the effect of their flexibility is unknown: {error}",)
     words = []
     for part, fractions in zip(rigid_parts, lower, strict=True):
         k = int(fractions.argmax())

@@ -157,6 +157,12 @@ def test_a_flexible_shaft_is_stated(tmp_path: Path) -> None:
     assert "flap" in shaft.split(")")[0]
 
 
+def test_a_turbine_that_its_tower_does_not_carry_is_read(tmp_path: Path) -> None:
+    path = deck.htc(tmp_path)
+    path.write_text(path.read_text().replace("name tower ;", "name tower ;\n  gravity 1e6 ;"))
+    assert "the effect of their flexibility is unknown" in " ".join(hawc2.read(path).source.notes)
+
+
 LACKING = {
     "a shaft's file": ("filename shaft.st", "filename other.st", "other.st of shaft is not there"),
     "a hub": ("begin main_body;\n  name hub2 ;", "begin main_body;\n  name other ;", "the htc has no main_body hub2"),
