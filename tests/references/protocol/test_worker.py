@@ -116,10 +116,12 @@ def test_a_path_without_a_code_is_an_error(path: str, reported: str) -> None:
 
 
 def test_other_packages_register_codes_by_entry_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also one that is installed after the codes were first looked up, as from a notebook."""
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert "their-code" not in registry.names()
     info = tmp_path / "theirs-1.0.dist-info"
     info.mkdir()
     (info / "METADATA").write_text("Metadata-Version: 2.1\nName: theirs\nVersion: 1.0\n")
     (info / "entry_points.txt").write_text("[southwell.codes]\ntheir-code = misbehaving:WELL_BEHAVED\n")
-    monkeypatch.syspath_prepend(str(tmp_path))
     assert "their-code" in registry.names()
     assert registry.code("their-code").title == "Misbehaving"
