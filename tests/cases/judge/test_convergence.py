@@ -17,7 +17,9 @@ def answer(elements: int, flap: float, edge: float, uncertainty: tuple[float, ..
     """Two modes, in ascending order."""
     pairs = sorted([(flap, 0), (edge, 1)])
     shapes = np.array([(FLAP, EDGE)[k] for _, k in pairs])
-    modes = Modes(1.0, np.array([frequency for frequency, _ in pairs]), shapes, elements, uncertainty=np.array(uncertainty))
+    modes = Modes(
+        1.0, np.array([frequency for frequency, _ in pairs]), shapes, elements, uncertainty=np.array(uncertainty)
+    )
     return of_blade(modes, WEIGHT)
 
 
