@@ -51,7 +51,7 @@ class Weighed:
     Attributes:
         whole: moments of the whole turbine.
         rotor: moment of inertia about the shaft without the generator, kg m².
-        height: of the mass centre above the base, m.
+        height: of the tower's top, m.
     """
 
     whole: Moments
