@@ -12,6 +12,8 @@ from scipy.special import jn_zeros
 
 from southwell.cases.campbell import confirmation
 from southwell.cases.campbell.diagram import Campbell, CampbellRequest, campbell
+from southwell.cases.campbell.lines import line_of
+from southwell.cases.campbell.margins import margins
 from southwell.cases.campbell.prestress import STANDARD_GRAVITY, gravity
 from southwell.cases.campbell.required import RequiredMargin, required_margin
 from southwell.cases.campbell.sweep import sweep
@@ -91,6 +93,29 @@ def test_a_resonances_distance_from_the_operating_range_is_to_its_nearer_end() -
     inside = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.7, 2.0)).resonances}
     assert inside[0, 3] == inside[1, 2] == 0.0
     assert all(r.apart is None for r in diagram(operating=None).resonances)
+
+
+def test_the_uncertainty_of_a_coefficient_and_of_a_margin_is_that_of_the_frequencies() -> None:
+    """Relative u: the slope's is Σ |x − x̄| 2 u ω²/Σ (x − x̄)² over x = Ω², a margin's is u ω/(n Ω)."""
+    u = 1e-4
+    doubtful = lambda omega: replace(southwell(omega), uncertainty=np.full(2, u))  # noqa: E731
+    speeds = (0.0, 1.0, 2.0, 3.0)
+    request = CampbellRequest(speeds, modes=2, per_rev=(1,), operating=(1.0, 2.0))
+    result = campbell(BLADE, request, doubtful)
+    x = np.array(speeds) ** 2
+    weight = np.abs(x - x.mean()) / ((x - x.mean()) ** 2).sum()
+    (flap, _) = result.southwell
+    assert flap is not None
+    assert flap.uncertainty == pytest.approx((weight * 2.0 * u * (4.0 + 1.5 * x)).sum(), rel=1e-9)
+    margin = next(m for m in result.margins if m.track == 0)
+    assert margin.uncertainty == pytest.approx(u * np.sqrt(10.0) / 2.0, rel=1e-6)
+
+
+def test_a_line_that_does_not_span_the_operating_range_has_no_margin() -> None:
+    request = CampbellRequest((1.0, 1.5, 2.0), modes=1, per_rev=(1,))
+    line = line_of(campbell(BLADE, request, southwell).tracks, 0)
+    for low, high, count in ((1.0, 2.0, 1), (0.5, 2.0, 0), (1.0, 2.5, 0)):
+        assert len(margins([line], (), (1,), (low, high), RequiredMargin(0.1))) == count
 
 
 def test_margins_at_the_ends_and_the_least_are_those_of_the_closed_form() -> None:

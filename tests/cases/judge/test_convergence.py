@@ -39,7 +39,8 @@ def test_a_mode_is_followed_where_modes_change_places() -> None:
 
 
 def test_an_error_bound_is_that_of_the_finest_answer() -> None:
-    answers = [answer(2, 1.2, 2.0, (0.3, 0.3)), answer(4, 1.1, 2.0, (0.1, 0.2))]
+    """The others state none."""
+    answers = [answer(2, 1.3, 2.0), answer(4, 1.2, 2.0), answer(8, 1.1, 2.0, (0.1, 0.2))]
     flap, edge = follow(answers, COMPARED, 2, bracket=True)
     assert flap.estimate is not None
     assert edge.estimate is not None
@@ -54,6 +55,8 @@ def test_without_an_error_bound_a_bracket_is_estimated_from_refinement() -> None
     assert not flap.bracketed
     assert flap.estimate is not None
     assert flap.estimate.value == pytest.approx(1.0)
+    assert flap.estimate.uncertainty is not None
+    assert flap.estimate.uncertainty < 0.1
 
 
 def test_without_answers_there_is_no_partner() -> None:
