@@ -129,6 +129,7 @@ def test_margins_at_the_ends_and_the_least_are_those_of_the_closed_form() -> Non
         assert m.least == pytest.approx(0.0 if meets else min(ends, key=abs), rel=1e-9)
         assert m.kept == (abs(m.least) >= 0.1)
     assert not result[0, 2].kept
+    assert result[0, 2].uncertainty == 0.0
     assert result[0, 2].omega == pytest.approx(2.0 / np.sqrt(2.5), rel=1e-9)
 
 
