@@ -231,6 +231,8 @@ def test_it_builds_without_a_warning_with_every_page(built: Path) -> None:
     assert {Path(page).stem for page in PAGES} <= {path.stem for path in built.glob("*.html")}
     names = [registry.code(name).name for name in registry.names()]
     assert all((built / "codes" / f"{name}.html").exists() for name in names)
+    assert '<div class="language-console highlight">' in (built / "your-blade.html").read_text(encoding="utf-8")
+    assert not [page.name for page in (built / "api").glob("*.html") if "::</p>" in page.read_text(encoding="utf-8")]
 
 
 @pytest.mark.slow
