@@ -244,6 +244,7 @@ def test_nothing_is_fetched_to_read_it(built: Path) -> None:
         assert not re.search(r"(@import|url\()\s*[\"']?(https?:)?//", path.read_text(encoding="utf-8")), path
 
 
+@pytest.mark.slow
 @browsers.needed
 def test_search_works_from_the_file_system(built: Path) -> None:
     with browsers.browser() as running, browsers.tab(running) as page:
