@@ -55,8 +55,7 @@ class TurbineModes:
             rotation of the rotor is left out.
         growth: (m,) real parts, 1/s: rounding, unless gyroscopic or periodic forces destabilise the machine.
         names: (m,) as ``1st flap forward whirl``.
-        confidence: (m,) part of the elastic energy in the motion that names each mode; of two blades, at most the part of the
-            largest harmonic in the motion.
+        confidence: (m,) part of the elastic energy in the motion that names each mode; of two blades, at its frequency.
         energies: (m, g) parts of the groups ``groups``; each row adds up to 1.
         groups: (g,) names of the motions.
         shapes: (m, k) displacements of tower, shaft and blades by multi-blade coordinate, for tracking; the largest is 1.
@@ -91,9 +90,20 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         return _constant_modes(made, omega, count)
     a, solved = periodic_modes(made, omega, count)
     labels, numbers = _labels(made, a)
-    harmonics = [_energies(made, a, h.T, numbers, len(labels)).sum(0) for h in solved.harmonics]
-    modes = _named(made, a, solved.values, solved.shapes, np.array(harmonics))
-    return replace(modes, confidence=np.minimum(modes.confidence, solved.participation))
+    values, shapes, energies, parts = solved.values.copy(), [], [], []
+    for k, harmonics in enumerate(solved.harmonics):
+        energy = _energies(made, a, harmonics.T, numbers, len(labels))
+        group = energy.sum(0).argmax()
+        largest = int(energy[:, group].argmax())  # where the motion that names the mode moves most
+        values[k] += 1j * omega * (largest - len(harmonics) // 2)
+        forward = values[k].imag >= 0
+        values[k], shape = (values[k], harmonics[largest]) if forward else (values[k].conj(), harmonics[largest].conj())
+        shapes.append(shape)
+        energies.append(energy.sum(0))
+        parts.append(energy[largest, group] / energy.sum())
+    order = np.argsort(values.imag, kind="stable")
+    modes = _named(made, a, values[order], np.array(shapes)[order].T, np.array(energies)[order])
+    return replace(modes, confidence=np.array(parts)[order])
 
 
 def _constant_modes(made: Machine, omega: float, count: int) -> TurbineModes:

@@ -1,7 +1,7 @@
 """Modes of a turbine of two blades, whose equations are periodic, by Floquet's and Hill's methods.
 
-A mode moves at the frequencies ω + hΩ, those of the tower in the ground's frame and those of the blades in the rotor's. Its
-frequency is the one with the largest participation (``rotor.exponents``), and its shape is that harmonic's. The equations are
+A mode moves at the frequencies ω + hΩ, those of the tower in the ground's frame and those of the blades in the rotor's. The
+lowest modes are those of the lowest frequencies with the largest participation (``rotor.exponents``). The equations are
 restricted to the lowest motions of their mean over the azimuth; what is left out shows as a change when motions are added.
 Half a revolution later they are the same, with the signs of the blades' difference and of the teeter angle reversed.
 """
@@ -40,17 +40,10 @@ class PeriodicModes:
     Attributes:
         values: (m,) growth plus i times the frequency of the largest harmonic, 1/s; frequencies ascend.
         harmonics: (m,) arrays (2H + 1, n): the motion at each harmonic, the largest in the middle.
-        participation: (m,) part of the largest harmonic in the motion.
     """
 
     values: Complex
     harmonics: tuple[Complex, ...]
-    participation: Array
-
-    @property
-    def shapes(self) -> Complex:
-        """(n, m) the largest harmonic of each mode."""
-        return np.array([h[len(h) // 2] for h in self.harmonics]).T
 
 
 def periodic_modes(made: Machine, omega: float, count: int) -> tuple[Assembled, PeriodicModes]:
@@ -82,7 +75,6 @@ def periodic_modes(made: Machine, omega: float, count: int) -> tuple[Assembled, 
     return a, PeriodicModes(
         values=np.array([value for value, _ in confirmed]),
         harmonics=tuple(p @ X.T for _, p in confirmed),
-        participation=exponents.participation[largest[order], order],
     )
 
 

@@ -28,7 +28,7 @@ FRAME = "Frequencies are in the ground's frame: a blade sees a backward whirl 1P
 
 OF_TWO_BLADES = (
     "Frequencies of the tower are in the ground's frame, those of the two blades in the rotor's: each side sees a mode of the "
-    "other 1P higher and lower. A mode moves at several such frequencies; that of its largest part is given."
+    "other 1P higher and lower. A mode moves at several such frequencies; that of the motion that names it is given."
 )
 
 NAMED = (

@@ -97,6 +97,18 @@ def test_more_motions_change_little() -> None:
     assert (few.confidence > 0.5).all()
 
 
+def test_a_mode_has_the_frequency_of_the_motion_that_names_it() -> None:
+    """Other frequencies of a mode differ by multiples of Ω, and can move more mass: the lines do not jump between them."""
+    made = machine(small(blades=2), SMALL)
+    edge = []
+    for omega in (3.6, 3.7, 3.8):
+        modes = turbine_modes(made, omega, 12)
+        assert (np.diff(modes.frequencies) >= 0).all()
+        edge += [f for f, n in zip(modes.frequencies, modes.names, strict=True) if n == "1st edge differential"]
+    np.testing.assert_allclose(edge, 13.14, rtol=3e-3)
+    assert len(edge) == 3
+
+
 def test_what_has_no_constant_modes_is_refused() -> None:
     made = machine(small(blades=2), SMALL)
     with pytest.raises(PeriodicError, match="two blades vary with the azimuth"):
