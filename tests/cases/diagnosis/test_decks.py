@@ -64,7 +64,7 @@ def test_columns_are_averaged_by_themselves_and_mass_by_its_moment() -> None:
     r = np.array([0.0, 3.0, 10.0])
     columns = {"r": r, "m": 8.0 - 0.5 * r, "E": 2.0 + r, "x_cg": 0.3 + 0.0 * r, "x_sh": 0.4 + 0.0 * r, "y_cg": 0.0 * r,
                "y_sh": 0.0 * r, "x_e": 0.1 + 0.0 * r, "y_e": 0.0 * r}  # fmt: skip
-    averaged = _averaged(Table(Text(Path("st.dat"), []), columns, (0, 1, 2)), np.array([0.0, 4.0, 10.0]))
+    averaged = _averaged(Table(Text(Path("st.dat"), ()), columns, (0, 1, 2)), np.array([0.0, 4.0, 10.0]))
     assert averaged["E"] == pytest.approx([4.0, 9.0])
     assert averaged["x_cg"] == pytest.approx([0.2, 0.2])
     assert averaged["x_sh"] == pytest.approx([0.3, 0.3])
