@@ -72,8 +72,8 @@ def assemble(made: Machine, omega: float) -> Assembled:
             f"blades: {made.turbine.blades}: the equations of two blades vary with the azimuth and have no constant modes; "
             "`southwell campbell` solves them by Floquet's and Hill's methods"
         )
-    same = (rotor(made.turbine, a.blade, omega, psi) for psi in (0.0, 0.7))
-    check_constant(*same, abs(omega) + float(a.blade.frequencies[0]))
+    first, second = (rotor(made.turbine, a.blade, omega, psi) for psi in (0.0, 0.7))
+    check_constant(first, second, abs(omega) + float(a.blade.frequencies[0]))
     return a
 
 
