@@ -52,6 +52,7 @@ def test_a_rod_that_stretches() -> None:
     loads = root_loads(BEAM, OMEGA)
     np.testing.assert_allclose(loads.force, [1e6 * (slope - 1.0), 0.0, 0.0], rtol=1e-9, atol=1e-9)
     np.testing.assert_allclose(loads.moment, np.zeros(3), atol=1e-9)
+    assert loads.uncertainty[1] >= 0.999e-13 * 6.0 * loads.force[0]  # rounding of a force at the tip
 
 
 def test_a_rigid_blade_has_the_loads_of_its_moments_of_inertia() -> None:
