@@ -36,6 +36,6 @@ def listed(items: list[str], most: int = 3) -> str:
     return ", ".join(items[:most]) + more
 
 
-def count(n: int, what: str) -> str:
-    """A number of things, with an s unless it is one."""
-    return f"{n} {what}{'' if n == 1 else 's'}"
+def count(n: int, name: str, several: str = "") -> str:
+    """A number of things of this name, which takes an s unless there is one of them, or is replaced by ``several``."""
+    return f"{n} {name if n == 1 else several or name + 's'}"

@@ -111,7 +111,7 @@ def misses(entry: Entry) -> int:
 
 def nothing(after: Entry) -> Entry:
     """The baseline of a first run: no cells, so that every miss counts."""
-    return Entry("nothing", "", after.machine, after.versions, ())
+    return Entry("no baseline", "", after.machine, after.versions, ())
 
 
 def within(entry: Entry, other: Entry) -> Entry:

@@ -5,7 +5,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 from rich.table import Table
 
-from ...cases.linearisation.findings import DEFECT, LIMIT, NOTE, Finding
+from ...cases.linearisation.findings import DEFECT, LIMIT, NOTE, Finding, count
 from ...cases.linearisation.judged import NO, OPEN, YES, JudgedSet, Judgement, TrackedMode
 from ...cases.linearisation.machine.split import (
     AERODYNAMICS,
@@ -36,10 +36,10 @@ MOST = 20
 def verdict(judgement: Judgement) -> str:
     """The first line: the verdict, what was read, and the number of findings."""
     files = sum(len(judged.each.files) for judged in judgement.sets)
-    parts = [_count(files, "linearisation"), _count(len(judgement.sets), "operating point")] if files else []
-    parts += [_count(len(judgement.tables), "table of modes", "tables of modes")] if judgement.tables else []
+    parts = [count(files, "linearisation"), count(len(judgement.sets), "operating point")] if files else []
+    parts += [count(len(judgement.tables), "table of modes", "tables of modes")] if judgement.tables else []
     defects = sum(finding.level == DEFECT for finding in judgement.findings)
-    counted = f"; {_count(defects, 'defect')}" if defects else ""
+    counted = f"; {count(defects, 'defect')}" if defects else ""
     return f"{judgement.verdict}: {MEANING[judgement.verdict]} ({', '.join(parts)}{counted})"
 
 
@@ -179,11 +179,7 @@ def _uncertainty(mode: Mode) -> str:
 def _rpm(judged: JudgedSet) -> str:
     wind = judged.each.files[0].wind_speed
     at = f" at {wind:g} m/s" if np.isfinite(wind) and wind > 0 else ""
-    return f"{judged.each.omega * 30 / np.pi:.4g} rpm{at}, {_count(len(judged.each.files), 'azimuth')}"
-
-
-def _count(n: int, what: str, several: str = "") -> str:
-    return f"{n} {what if n == 1 else several or what + 's'}"
+    return f"{judged.each.omega * 30 / np.pi:.4g} rpm{at}, {count(len(judged.each.files), 'azimuth')}"
 
 
 def plain(judgement: Judgement, compared: Sequence[Comparison] = ()) -> dict[str, object]:

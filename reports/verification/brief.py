@@ -83,11 +83,13 @@ def _cover(run: Run, folder: Path, document: Document) -> list[dict[str, str]]:
         f"{name} {v}" for name, v in run.versions.items() if v != "not installed" and "southwell " not in v
     )
     inputs = "; ".join(dict.fromkeys(s.source for s in run.settings if s.source)) if len(run.settings) == 1 else ""
+    cases = "1 case" if len(run.settings) == 1 else f"{len(run.settings)} cases"
+    settings = sha256(repr(run.settings).encode()).hexdigest()
     rows = {
         "document": document.number,
         "revision": document.revision,
         "source of the blade": plain(inputs),
-        "input": f"settings of {len(run.settings)} cases, SHA-256 `{sha256(repr(run.settings).encode()).hexdigest()}`",
+        "input": f"settings of {cases}, SHA-256 `{settings}`",
         "results": f"{RESULTS}, SHA-256 `{digest}`",
         "computed, written": f"{computed:%Y-%m-%d %H:%M} UTC, {datetime.now(UTC):%Y-%m-%d %H:%M} UTC",
         "versions": plain(versions),

@@ -31,6 +31,9 @@ from .subjects import subjects as find_subjects
 
 Array = NDArray[np.float64]
 
+ON_AXIS = 5e-4
+"""Largest distance from the axis, m, that the digits of the table show as zero."""
+
 
 def command(
     blade: str,
@@ -109,16 +112,24 @@ def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
     return Group(table)
 
 
-def stations(blade: Blade, most: int | None) -> tuple[Table, Table]:
-    """The tables of properties and of centres, with at most ``most`` evenly spaced stations including both ends."""
+def stations(blade: Blade, most: int | None) -> list[Table]:
+    """The tables of properties and of centres, with at most ``most`` evenly spaced stations including both ends.
+
+    Centres that are all on the axis are one line under the table of properties.
+    """
     values = rows(blade, sections(blade))
     n = len(values)
     some = picked(n, most)
     properties = _table(values[some], range(PROPERTIES))
     centres = _table(values[some], (0, *range(PROPERTIES, len(COLUMNS))))
-    if len(some) < n:
-        centres.caption = f"{len(some)} of {n} stations; --all shows all"
-    return properties, centres
+    on_axis = bool(np.all(np.abs(values[:, PROPERTIES:]) < ON_AXIS))
+    tables = [properties] if on_axis else [properties, centres]
+    captions = (
+        on_axis and "All centres are on the axis, within 0.5 mm.",
+        len(some) < n and f"{len(some)} of {n} stations; --all shows all",
+    )
+    tables[-1].caption = "\n".join(caption for caption in captions if caption) or None
+    return tables
 
 
 def _table(values: Array, columns: Sequence[int]) -> Table:

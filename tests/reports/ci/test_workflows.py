@@ -152,7 +152,7 @@ def test_the_action_passes_then_fails_on_what_got_worse(tmp_path: Path) -> None:
     case = tmp_path / "mine.toml"
     case.write_text(CASE, encoding="utf-8")
     status, shown = action(tmp_path, **FEW)
-    assert (status, "against nothing" in shown) == (0, True), shown
+    assert (status, "against no baseline" in shown) == (0, True), shown
     assert "### Southwell" in (tmp_path / "summary.md").read_text(encoding="utf-8")
     assert (tmp_path / "out" / "junit.xml").exists()
 

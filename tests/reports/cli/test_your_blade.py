@@ -1,14 +1,18 @@
 """A blade file from the command line: changes, margins as a status, verification without a case file."""
 
 import re
+from dataclasses import replace
 from io import StringIO
 from pathlib import Path
 
+import numpy as np
 import pytest
 from rich.console import Console
 
 from southwell.cases.campbell.sweep import Named
 from southwell.cases.campbell.tracked import TrackedMode
+from southwell.cases.input.blades import offset
+from southwell.cases.judge.results import Control
 from southwell.cases.store import results_file
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
@@ -177,19 +181,33 @@ def test_no_column_of_words_is_cut(width: int) -> None:
 
 
 def test_a_narrow_terminal_has_no_column_of_broken_words_for_faults() -> None:
+    control = Control(
+        "no hub radius", "solver", "the root is on the axis", "+3 %", "beam", 10.0, ("beam, a: fail",), 0.03
+    )
+    run = replace(samples.run(), controls=(control,))
     for width, shown in ((80, False), (120, True)):
         console = Console(width=width, file=StringIO(), highlight=False)
-        console.print(terminal.controls(samples.run(), width))
+        console.print(terminal.controls(run, width))
         text = console.file.getvalue()  # type: ignore[attr-defined]
         assert ("detected by" in text) == shown
+        assert ("beam, a: fail" in text) == shown
         assert "largest difference" in text
+        assert "no hub radius" in text
+
+
+def test_centres_on_the_axis_are_one_line() -> None:
+    blade = uniform_blade("b", 99.0, 1.0, EA=1.5e10, GJ=1.5e9, EI_y=1.5e10, EI_z=2.5e10, mass=1234.5)
+    (table,) = show.stations(blade, 5)
+    assert table.caption == "All centres are on the axis, within 0.5 mm."
+    aside = replace(blade, mass=offset(blade.mass, np.full(len(blade.stations), 1e-3)))
+    assert len(show.stations(aside, 5)) == 2
 
 
 def test_stations_are_whole_in_eighty_columns() -> None:
     console = Console(width=80, file=StringIO(), highlight=False)
-    for table in show.stations(
-        uniform_blade("b", 99.0, 1.0, EA=1.5e10, GJ=1.5e9, EI_y=1.5e10, EI_z=2.5e10, mass=1234.5), 5
-    ):
+    blade = uniform_blade("b", 99.0, 1.0, EA=1.5e10, GJ=1.5e9, EI_y=1.5e10, EI_z=2.5e10, mass=1234.5)
+    aside = replace(blade, mass=offset(blade.mass, np.full(len(blade.stations), 0.2)))
+    for table in show.stations(aside, 5):
         console.print(table)
     shown = console.file.getvalue()  # type: ignore[attr-defined]
     assert "…" not in shown
