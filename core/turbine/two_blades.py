@@ -65,9 +65,7 @@ def periodic_modes(made: Machine, omega: float, count: int) -> tuple[Assembled, 
         exponents = floquet(reduced, half_turn, ACCURACY)
         largest = _largest(exponents)
         frequencies = np.take_along_axis(exponents.candidates, largest[None], 0)[0]
-        order = np.argsort(frequencies)[
-            len(frequencies) // 2 :
-        ]  # of each pair of conjugates, the one that is not negative
+        order = np.argsort(frequencies)[len(frequencies) // 2 :]  # of two conjugates, that with a frequency ≥ 0
         if free:
             order = np.delete(order, np.abs(exponents.values[order]).argmin())
         order = order[:count]
@@ -90,14 +88,14 @@ def _confirmed(
     value = complex(exponents.values[mode]) + 1j * order * exponents.omega
     top = min(largest, len(exponents.shapes) - 1 - largest)
     about = exponents.shapes[largest - top : largest + top + 1, :, mode]
-    found, harmonics, error = hill.refined(system, value, about, ACCURACY, (-1.0) ** order * half_turn)
-    apart = abs(found - value)
+    exponent, harmonics, error = hill.refined(system, value, about, ACCURACY, (-1.0) ** order * half_turn)
+    apart = abs(exponent - value)
     if apart > 10.0 * max(ACCURACY * abs(exponents.omega), error, float(exponents.error[mode])):
         raise PeriodicError(
             f"exponents: Floquet's and Hill's method differ by {apart:.1e} 1/s near {abs(value):.4g} rad/s, more than their "
             "errors; give other speeds, and please report this"
         )
-    return found, harmonics
+    return exponent, harmonics
 
 
 def _held(a: Assembled, system: Periodic) -> Periodic:

@@ -154,10 +154,15 @@ def _axes(points: Array, arc: Array, s: Array) -> Array:
     return axes @ sp.rotation(0, np.radians(np.interp(s, arc, points[:, 3])))
 
 
+def moved(inertia: Array, pose: Array) -> Array:
+    """An inertia (6, 6) at another origin and in other axes, in which its own frame has the pose (4, 4)."""
+    return np.asarray(transformed(np.ascontiguousarray(inertia), np.ascontiguousarray(pose)), float)
+
+
 def _masses(body: bodies.Body, nodes: Array) -> tuple[tuple[Mass, ...], tuple[Unused, ...]]:
     """The concentrated masses of a body, and their products of inertia, which are not used."""
     out: list[Mass] = []
-    left: list[Unused] = []
+    not_used: list[Unused] = []
     for command in (c for c in body if c.words[0] == "concentrated_mass"):
         values = [number(word) for word in command.words[1:]]
         numbers = [v for v in values if v is not None and np.isfinite(v)]
@@ -177,8 +182,8 @@ def _masses(body: bodies.Body, nodes: Array) -> tuple[tuple[Mass, ...], tuple[Un
         centre = nodes[node] + numbers[1:4]
         out.append(Mass(node, np.ascontiguousarray(transformed(own, sp.pose(np.eye(3), centre)))))
         why = "products of inertia of a concentrated mass are not supported"
-        left += unused("concentrated_mass", numbers[8:], "kg m²", command.text.path, why)
-    return tuple(out), tuple(left)
+        not_used += unused("concentrated_mass", numbers[8:], "kg m²", command.text.path, why)
+    return tuple(out), tuple(not_used)
 
 
 def _nodes_are_sections(body: bodies.Body) -> bool:
