@@ -23,6 +23,9 @@ SPARE = 4
 SAFETY = 3.0
 """Factor from a change under refinement to the uncertainty of a frequency."""
 
+HARMONICS = 3
+"""Largest |h| of the frequencies ω + hΩ by which a line continues."""
+
 _POINTS = 2001  # speeds at which lines between solved speeds are compared with nP
 
 
@@ -43,7 +46,8 @@ class ModeLine:
 
     Attributes:
         name: its most frequent name, numbered where two lines share one.
-        frequencies: (k,) rad/s, in the ground's frame.
+        frequencies: (k,) rad/s, in the ground's frame; of two blades, at speeds where its name is another, that of the mode's
+            frequencies ω + hΩ which continues the line.
         names: (k,) its name at each speed.
         confidence: (k,) part of the elastic energy in the motion that names it.
         uncertainty: relative numerical uncertainty.
@@ -142,7 +146,10 @@ def machine_diagram(
     # from the highest speed downwards: at rest, whirls of a symmetric rotor have no definite shape
     order = tracked(solved[::-1])[::-1]
     chosen = np.argsort(solved[0].frequencies[order[0]], kind="stable")[: request.modes]
-    lines = _numbered([_line(solved, [int(places[t]) for places in order], doubt) for t in chosen])
+    mode_lines = [_line(solved, [int(places[t]) for places in order], doubt) for t in chosen]
+    if turbine.blades == 2:
+        mode_lines = [replace(line, frequencies=continued(line, omega)) for line in mode_lines]
+    lines = _numbered(mode_lines)
     return MachineDiagram(
         turbine=turbine,
         request=request,
@@ -171,6 +178,19 @@ def _line(solved: Sequence[TurbineModes], places: Sequence[int], doubt: Array) -
         uncertainty=float(doubt[list(places)].max()),
         places=tuple(places),
     )
+
+
+def continued(line: ModeLine, omega: Array) -> Array:
+    """(k,) frequencies of a line of a periodic system, continued through speeds at which its name is another.
+
+    A mode moves at ω + hΩ. There, its largest motion is another, perhaps at another h than before: the frequency is the one
+    nearest to the straight line of f² over Ω² through the speeds with the line's own name.
+    """
+    own = np.array([name == line.name for name in line.names])
+    expected = np.sqrt(np.interp(omega**2, omega[own] ** 2, line.frequencies[own] ** 2))
+    candidates = np.abs(line.frequencies + np.arange(-HARMONICS, HARMONICS + 1)[:, None] * omega)
+    nearest = np.abs(candidates - expected).argmin(0)
+    return np.where(own, line.frequencies, np.take_along_axis(candidates, nearest[None], 0)[0])
 
 
 def _numbered(lines: Sequence[ModeLine]) -> tuple[ModeLine, ...]:
