@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from southwell.cases.input.readers.hawc2 import orientation, rigid
+from southwell.cases.input.readers.hawc2 import drivetrain, orientation, rigid
 from southwell.cases.input.readers.hawc2 import turbine as hawc2
 from southwell.cases.input.readers.openfast import elastodyn_tower
 from southwell.cases.input.readers.openfast import turbine as reader
@@ -16,7 +16,7 @@ from southwell.cases.plan import turbine as plan
 from southwell.cases.solve import turbine_weights
 from southwell.cases.solve.turbine_reading import read_again
 from southwell.core.blade import Blade
-from southwell.core.turbine.turbine import shaft_pose
+from southwell.core.turbine.turbine import Drivetrain, shaft_pose
 from southwell.references.protocol.process import Limits
 from southwell.tests.support import htc_decks
 from southwell.tests.support.turbine_decks import deck
@@ -146,7 +146,7 @@ HTC_MISTAKES = {
         {"moment of the nacelle's mass to port"},
     ),
     "generator doubled": (
-        (hawc2, "Drivetrain", lambda k, J, ratio, free, right=hawc2.Drivetrain: right(k, 2.0 * J, ratio, free)),
+        (drivetrain, "Drivetrain", lambda k, J, ratio, free: Drivetrain(k, 2.0 * J, ratio, free)),
         {"generator's inertia on the rotor's side"},
     ),
 }
