@@ -102,12 +102,12 @@ def refined(
     previous, change = None, np.inf
     while n * (2 * H + 1) <= MAX_SIZE and top >= H:
         about = slice(top - H, top + H + 1)
-        found, p = _newton(system, value, shape[about], kept[about])
+        exponent, p = _newton(system, value, shape[about], kept[about])
         if previous is not None:
-            change = abs(found - previous)
+            change = abs(exponent - previous)
             if change <= accuracy * abs(system.omega):
-                return found, p, change
-        previous, H = found, H + max(system.harmonics, 1)
+                return exponent, p, change
+        previous, H = exponent, H + max(system.harmonics, 1)
     raise PeriodicError(
         f"Hill: an exponent changes by {change / abs(system.omega):.1e} Ω at {H} harmonics: give higher speeds"
     )

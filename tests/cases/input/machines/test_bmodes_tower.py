@@ -167,12 +167,12 @@ def test_a_tower_on_a_platform(tmp_path: Path) -> None:
     assert base[1, 5] == base[5, 1]
     stiff = replace(tower, beam=replace(tower.beam, stiffness=1e4 * tower.beam.stiffness, tip_mass=1e-6 * np.eye(6)))
     light = replace(stiff, beam=replace(stiff.beam, mass=1e-6 * stiff.beam.mass))
-    found = tower_modes(light, 6)
+    modes = tower_modes(light, 6)
     exact = np.sqrt(scipy.linalg.eigh(base, mass, eigvals_only=True))
-    np.testing.assert_allclose(found.frequencies, exact, rtol=1e-4)
-    assert sorted(found.names) == [f"platform {n}" for n in ("heave", "pitch", "roll", "surge", "sway", "yaw")]
+    np.testing.assert_allclose(modes.frequencies, exact, rtol=1e-4)
+    assert sorted(modes.names) == [f"platform {n}" for n in ("heave", "pitch", "roll", "surge", "sway", "yaw")]
     names = tower_modes(tower, 8).names
-    assert names[:6] == found.names
+    assert names[:6] == modes.names
     assert names[6:] == ("1st side-side", "1st fore-aft")
     assert not source.unused
     assert "free in all directions" in " ".join(source.notes)
@@ -190,10 +190,10 @@ def test_pybmodes_has_the_same_modes_on_a_platform(tmp_path: Path) -> None:
     path = Path(models.__file__).parent.parent / "_examples" / example
     if not path.is_file():
         pytest.skip("this pybmodes has no example of a spar")
-    found = tower_modes(towers.read(path)[0], 8)
+    modes = tower_modes(towers.read(path)[0], 8)
     other = np.array(models.Tower(path).run(n_modes=8).frequencies)
-    np.testing.assert_allclose(found.frequencies / (2 * np.pi), other, rtol=3e-4)
-    assert found.names[:3] == ("platform surge", "platform sway", "platform heave")
+    np.testing.assert_allclose(modes.frequencies / (2 * np.pi), other, rtol=3e-4)
+    assert modes.names[:3] == ("platform surge", "platform sway", "platform heave")
 
 
 @pytest.mark.parametrize(
