@@ -163,8 +163,9 @@ def spawned(
             try:
                 line = queue.get(timeout=max(min(poll_interval, deadline - monotonic()), 0.001))
             except Empty:
-                late = monotonic() >= deadline
-                stopped = f"no answer within {time_limit(len(lines)):g} s" if late else stop_reason(child.pid)
+                stopped = stop_reason(child.pid)
+                if not stopped and monotonic() >= deadline:
+                    stopped = f"no answer within {time_limit(len(lines)):g} s"
                 continue
             if not line.endswith(b"\n"):
                 stopped = f"an answer of more than {longest_line >> 20} MiB" if line else ""

@@ -132,13 +132,13 @@ def _listen(
         ready.register(stdin, selectors.EVENT_WRITE)
         while len(lines) <= expected:
             now, ended = time.monotonic(), child.poll() is not None
-            if now >= deadline:
-                within = limits.seconds if lines else START
-                return lines[1:], Failure("timed out", f"no answer within {within:g} s"), stderr
             if now >= next_check:
                 next_check = now + POLL_INTERVAL
                 if why := _too_large(_resident(child.pid), limits):
                     return lines[1:], Failure("crashed", why), stderr
+            if now >= deadline:
+                within = limits.seconds if lines else START
+                return lines[1:], Failure("timed out", f"no answer within {within:g} s"), stderr
             events = ready.select(0.0 if ended else min(POLL_INTERVAL, deadline - now))
             if ended and not any(key.fileobj is not stdin for key, _ in events):
                 break  # nothing is left in its pipes

@@ -53,13 +53,14 @@ def good(omega: float, elements: int, count: int) -> Modes:
 
 @dataclass(frozen=True)
 class Misdeed:
-    """One line of the table: what is done when, which runs may be lost, and what the reason must say."""
+    """One line of the table: what is done when, which runs may be lost, what the reason must say, and the time limit, s."""
 
     name: str
     when: When
     source: str
     lost: Lost
     reason: str = ""
+    seconds: float = 60.0
 
     def write(self, folder: Path) -> str:
         """Its module, in a folder; the import path of its code."""
@@ -94,6 +95,9 @@ HANGS = {
     "floods_stderr": "exec('while True: os.write(2, bytes(65536))')",
 }
 """What never ends."""
+
+HANG_SECONDS = 4.0
+"""Time limit of what never ends, s; all else has a limit that no busy machine reaches."""
 
 RAISES = {
     "sys_exit": ("sys.exit(0)", "SystemExit: 0"),
@@ -141,7 +145,7 @@ def _table() -> tuple[Misdeed, ...]:
     for name, (source, reason) in ENDS.items():
         out += [Misdeed(name, "import", source, "all", reason), Misdeed(name, "solve", source, "rest", reason)]
     for name, source in HANGS.items():
-        out.append(Misdeed(name, "solve", source, "rest", "no answer within"))
+        out.append(Misdeed(name, "solve", source, "rest", "no answer within", HANG_SECONDS))
     for name, (source, reason) in RAISES.items():
         out.append(Misdeed(name, "import", source, "all", f"import: {reason}" if "xxx" not in reason else reason))
     for name, source in HARMLESS.items():
@@ -149,7 +153,7 @@ def _table() -> tuple[Misdeed, ...]:
     for name, (source, reason) in PIPES.items():
         out.append(Misdeed(name, "solve", source, "rest", reason))
     out += [
-        Misdeed("hang", "import", HANGS["hang"], "all", "no answer within"),
+        Misdeed("hang", "import", HANGS["hang"], "all", "no answer within", HANG_SECONDS),
         Misdeed("forks_twice", "import", HARMLESS["forks_twice"], "none"),
         Misdeed("changes_folder", "import", HARMLESS["changes_folder"], "none"),
         Misdeed(
@@ -160,14 +164,14 @@ def _table() -> tuple[Misdeed, ...]:
         Misdeed("exit_0", "version", "os._exit(0)", "all", "exit status 0"),
         Misdeed("sys_exit", "version", "sys.exit(0)", "all", "version(): SystemExit: 0"),
         Misdeed("raises", "version", "raise OSError('no such\\nbinary')", "all", "version(): OSError: no such binary"),
-        Misdeed("hang", "version", HANGS["hang"], "all", "no answer within"),
+        Misdeed("hang", "version", HANGS["hang"], "all", "no answer within", HANG_SECONDS),
         Misdeed("number", "version", "return 3", "all", "version: 3: Expected"),
         Misdeed("two_lines", "version", "return '1\\n::error 2'", "all", "version: '1\\n::error 2'"),
         Misdeed("surrogate", "version", "return '1\\ud800'", "all", "version: "),
         Misdeed("exit_0", "unsupported", "os._exit(0)", "all", "exit status 0"),
         Misdeed("sys_exit", "unsupported", "sys.exit(0)", "all", "unsupported(): SystemExit: 0"),
         Misdeed("raises", "unsupported", "raise OSError('no\\nserver')", "all", "unsupported(): OSError: no server"),
-        Misdeed("hang", "unsupported", HANGS["hang"], "all", "no answer within"),
+        Misdeed("hang", "unsupported", HANGS["hang"], "all", "no answer within", HANG_SECONDS),
         Misdeed("number", "unsupported", "return 5", "all", "unsupported(): 5: neither a reason nor None"),
         Misdeed("two_lines", "unsupported", "return 'no\\n::error'", "all", "no ::error"),
         Misdeed("surrogate", "unsupported", "return 'no \\ud800'", "all", "no ?"),

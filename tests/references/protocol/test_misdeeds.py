@@ -3,6 +3,7 @@
 import os
 from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -21,7 +22,7 @@ pytestmark = pytest.mark.slow
 
 BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, mass=1.2)
 RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
-LIMITS = Limits(seconds=4.0, memory=3 * 2**28)
+LIMITS = Limits(seconds=60.0, memory=3 * 2**28)
 TOKEN = f"southwell-misdeeds-{os.getpid()}"
 
 LEFT = {"none": "MMM", "one": "MFM", "rest": "MFF", "all": "FFF"}
@@ -40,10 +41,11 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Failure]]:
     """The description of the code and its answers; a code without a description is not run."""
     path = misdeed.write(folder)
+    limits = replace(LIMITS, seconds=misdeed.seconds)
     if misdeed.when in ("unsupported", "solve"):
-        return Description(path, path), answers(path, BLADE, RUNS, LIMITS)
-    (said,) = describe([path], limits=LIMITS)
-    return said, [said.failure] * len(RUNS) if said.failure else answers(path, BLADE, RUNS, LIMITS)
+        return Description(path, path), answers(path, BLADE, RUNS, limits)
+    (said,) = describe([path], limits=limits)
+    return said, [said.failure] * len(RUNS) if said.failure else answers(path, BLADE, RUNS, limits)
 
 
 @pytest.fixture(scope="module")
