@@ -169,13 +169,13 @@ def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case
     ("code", "verdict", "phrase"),
     [
         ("SEGFAULT", "fail", "SIGSEGV"),
-        ("HANG", "inconclusive", "no answer within 4 s"),
+        ("HANG", "inconclusive", "no answer within 8 s"),
         ("NOT_A_NUMBER", "fail", "not finite"),
         ("GIVE_UP", "fail", "no steady state"),
     ],
 )
 def test_a_failing_code_is_one_outcome_among_others(case, code: str, verdict: str, phrase: str) -> None:
-    run = solve(case("[2]"), MISBEHAVING + code, f"{ANALYTIC}UNABLE", timeout=4.0 if code == "HANG" else 60.0)
+    run = solve(case("[2]"), MISBEHAVING + code, f"{ANALYTIC}UNABLE", timeout=8.0 if code == "HANG" else 60.0)
     (cell,) = of(run, "misbehaving")
     assert (cell.verdict, cell.mode, cell.value) == (verdict, 0, None)
     assert phrase in cell.reason

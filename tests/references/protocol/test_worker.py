@@ -52,10 +52,10 @@ def test_finished_runs_survive_a_crash(attribute: str, reported: str) -> None:
 @pytest.mark.slow
 def test_a_hang_ends_with_its_time_limit_children_included() -> None:
     began = time.monotonic()
-    first, second, _ = ask("HANG", timeout=5.0)
-    assert time.monotonic() - began < 20.0
+    first, second, _ = ask("HANG", timeout=8.0)
+    assert time.monotonic() - began < 60.0
     assert isinstance(first, Modes)
-    assert second == Failure("timed out", "no answer within 5 s")
+    assert second == Failure("timed out", "no answer within 8 s")
 
 
 def test_prints_of_a_code_do_not_reach_the_protocol() -> None:
