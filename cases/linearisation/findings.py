@@ -14,7 +14,7 @@ class Finding:
         name: kind of the finding, as ``frame flag``.
         level: ``DEFECT``, ``LIMIT`` or ``NOTE``.
         where: name of the set.
-        what: what was measured, with the number.
+        observation: what was measured, with the number.
         remedy: what to do.
         value: the number.
     """
@@ -22,18 +22,18 @@ class Finding:
     name: str
     level: str
     where: str
-    what: str
+    observation: str
     remedy: str
     value: float
 
     def __str__(self) -> str:
-        return f"{self.name}: {self.what}: {self.remedy}"
+        return f"{self.name}: {self.observation}: {self.remedy}"
 
 
-def listed(items: list[str], most: int = 3) -> str:
+def listed(items: list[str], limit: int = 3) -> str:
     """The first items, and how many there are more."""
-    more = f" and {len(items) - most} more" if len(items) > most else ""
-    return ", ".join(items[:most]) + more
+    remainder = f" and {len(items) - limit} more" if len(items) > limit else ""
+    return ", ".join(items[:limit]) + remainder
 
 
 def count(n: int, name: str, several: str = "") -> str:

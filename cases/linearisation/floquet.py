@@ -56,8 +56,8 @@ def phases(azimuths: Array) -> int:
 
 def interpolate(azimuths: Array, matrices: Array, harmonics: int | None = None) -> Interpolation:
     """Fit the harmonics of blade passing that the azimuths determine, by least squares."""
-    most = min((phases(azimuths) - 1) // 2, MAX_HARMONICS)
-    count = most if harmonics is None else min(harmonics, most)
+    limit = min((phases(azimuths) - 1) // 2, MAX_HARMONICS)
+    count = limit if harmonics is None else min(harmonics, limit)
     h = np.arange(1, count + 1)
     basis = np.column_stack(
         [np.ones(len(azimuths)), np.cos(3 * np.outer(azimuths, h)), np.sin(3 * np.outer(azimuths, h))]
@@ -85,17 +85,17 @@ def second_order(
         adjoints: left eigenvectors by row, of unit product with the right ones.
         shapes: right eigenvectors by column.
     """
-    every = np.concatenate([values, values.conj()])
+    eigenvalues = np.concatenate([values, values.conj()])
     left, right = np.vstack([adjoints, adjoints.conj()]), np.hstack([shapes, shapes.conj()])
     coupling = np.max([np.abs(left @ part @ right) for part in parts], axis=0)
-    between = every[:, None] - every
+    between = eigenvalues[:, None] - eigenvalues
     gap = np.min([np.abs(between + 1j * n * omega) for n in orders], axis=0)
     size = (coupling * coupling.T / np.maximum(gap, MIN_GAP * abs(omega))).sum(axis=1)
     return size[: len(values)]
 
 
-def exponents(fit: Interpolation, omega: float, near: Complex) -> Complex:
-    """Floquet exponents next to the eigenvalues ``near`` of the mean matrix, rad/s.
+def exponents(fit: Interpolation, omega: float, eigenvalues: Complex) -> Complex:
+    """Floquet exponents next to the eigenvalues ``eigenvalues`` of the mean matrix, rad/s.
 
     The monodromy matrix of one blade passage is a product of exponentials of A at midpoints (Magnus, second order), of which
     each exponent is known up to multiples of 3Ωi. Exponents that overflow leave all eigenvalues as they are.
@@ -109,11 +109,11 @@ def exponents(fit: Interpolation, omega: float, near: Complex) -> Complex:
             psi = np.sign(omega) * (k + 0.5) * 2 * np.pi / 3 / steps
             Phi = expm(fit.at(float(psi)) * step) @ Phi
     if not np.isfinite(Phi).all():
-        return near
+        return eigenvalues
     multipliers = np.linalg.eigvals(Phi)
     base = np.log(multipliers[np.abs(multipliers) > 1e-250] + 0j) / period
-    out = np.empty(len(near), dtype=complex)
-    for k, value in enumerate(near):
+    out = np.empty(len(eigenvalues), dtype=complex)
+    for k, value in enumerate(eigenvalues):
         turns = np.round((value.imag - base.imag) / (3 * abs(omega)))
         shifted = base + 3j * abs(omega) * turns
         out[k] = shifted[np.argmin(np.abs(shifted - value))]

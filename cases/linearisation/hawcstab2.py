@@ -79,10 +79,10 @@ def _named(table: ModeTable, path: Path) -> ModeTable:
     rows = _numbers(path)
     n, motions = len(table.names), len(MOTIONS)
     if not len(rows) or rows.shape[1] != 1 + 2 * motions * n:
-        given = rows.shape[1] if len(rows) else 0
+        length = rows.shape[1] if len(rows) else 0
         raise CaseError(
-            f"{path}: {given} numbers in a row, expected {1 + 2 * motions * n}: a wind speed, and for each of the {n} modes of "
-            f"{table.name} {motions} amplitudes with their phases: give the .amp file of the same analysis"
+            f"{path}: {length} numbers in a row, expected {1 + 2 * motions * n}: a wind speed, and for each of the {n} modes "
+            f"of {table.name} {motions} amplitudes with their phases: give the .amp file of the same analysis"
         )
     if not np.array_equal(rows[:, 0], table.points):
         raise CaseError(

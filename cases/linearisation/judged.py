@@ -18,13 +18,13 @@ class JudgedSet:
     """A set with its modes and findings.
 
     Attributes:
-        each: the set.
+        azimuth_set: the set.
         modes: its modes by frequency, after corrections.
         method: how periodic coefficients were treated, ``AVERAGED`` or ``FLOQUET``.
         findings: defects first.
     """
 
-    each: AzimuthSet
+    azimuth_set: AzimuthSet
     modes: tuple[Mode, ...]
     method: str
     findings: tuple[Finding, ...]

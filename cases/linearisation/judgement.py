@@ -49,9 +49,9 @@ def judge(paths: Sequence[Path]) -> Judgement:
     """
     listed = tuple(_tables(paths))
     linearisations = [path for path in paths if path.suffix.lower() not in TABLES]
-    sets = tuple(judge_set(each) for each in collect([read(path) for path in linearisations]))
+    sets = tuple(judge_set(judged_set) for judged_set in collect([read(path) for path in linearisations]))
     tracked = tracking.track(sets)
-    findings = [finding for each in sets for finding in each.findings]
+    findings = [finding for judged_set in sets for finding in judged_set.findings]
     findings += [finding for table in listed for finding in mode_tables.findings(table)]
     findings += [*tracking.drift(sets), *tracking.lines(sets, tracked)]
     return Judgement(sets, tracked, listed, by_level(findings))
@@ -71,65 +71,69 @@ def _tables(paths: Sequence[Path]) -> Iterator[ModeTable]:
         )
 
 
-def judge_set(each: AzimuthSet) -> JudgedSet:
+def judge_set(azimuth_set: AzimuthSet) -> JudgedSet:
     """Judge the azimuths of one operating point."""
     findings = [
-        *tables.headers(each),
-        *tables.order(each),
-        *tables.flags(each),
-        *tables.completeness(each),
-        *tables.kinematics(each),
-        *azimuths.coverage(each),
-        *azimuths.steadiness(each),
-        *structure.columns(each),
-        *structure.symmetry(each),
+        *tables.headers(azimuth_set),
+        *tables.order(azimuth_set),
+        *tables.flags(azimuth_set),
+        *tables.completeness(azimuth_set),
+        *tables.kinematics(azimuth_set),
+        *azimuths.coverage(azimuth_set),
+        *azimuths.steadiness(azimuth_set),
+        *structure.columns(azimuth_set),
+        *structure.symmetry(azimuth_set),
     ]
     broken = any(finding.level == DEFECT and finding.name in STRUCTURAL_DEFECTS for finding in findings)
-    A, frame = (each.A, ()) if broken else in_rotating_frame(each)
+    A, frame = (azimuth_set.A, ()) if broken else in_rotating_frame(azimuth_set)
     findings += frame
-    averaged = spectrum(each, A)
+    averaged = spectrum(azimuth_set, A)
     if not broken:
-        findings += blades.equality(blades.differences(each), each)
-        findings += [*structure.generator(each, averaged), *structure.units(each, averaged)]
+        findings += blades.equality(blades.differences(azimuth_set), azimuth_set)
+        findings += [*structure.generator(azimuth_set, averaged), *structure.units(azimuth_set, averaged)]
     if not any(finding.level == DEFECT and finding.name != "truncated digits" for finding in findings):
-        findings += disagreement.agreement(each, A, averaged)
-    findings += structure.digits(each, averaged.modes)
-    modes, method = (averaged.modes, AVERAGED) if broken else _periodic(each, averaged)
+        findings += disagreement.agreement(azimuth_set, A, averaged)
+    findings += structure.digits(azimuth_set, averaged.modes)
+    modes, method = (averaged.modes, AVERAGED) if broken else _periodic(azimuth_set, averaged)
     if not any(finding.level == DEFECT for finding in findings):
-        findings += structure.damping(each, modes)
-    return JudgedSet(each, modes, method, tuple(_once(by_level(findings))))
+        findings += structure.damping(azimuth_set, modes)
+    return JudgedSet(azimuth_set, modes, method, tuple(_once(by_level(findings))))
 
 
 def _once(findings: Sequence[Finding]) -> Iterator[Finding]:
-    seen: set[str] = set()
+    names: set[str] = set()
     for finding in findings:
-        if finding.name not in seen:
+        if finding.name not in names:
             yield finding
-        seen.add(finding.name)
+        names.add(finding.name)
 
 
-def _periodic(each: AzimuthSet, averaged: Spectrum) -> tuple[tuple[Mode, ...], str]:
+def _periodic(azimuth_set: AzimuthSet, averaged: Spectrum) -> tuple[tuple[Mode, ...], str]:
     """Floquet's exponents in place of the eigenvalues of the mean matrix, where the azimuths determine them."""
-    if each.blades != 3 or not averaged.modes or abs(each.omega) < azimuths.STANDSTILL:
+    if azimuth_set.blades != 3 or not averaged.modes or abs(azimuth_set.omega) < azimuths.STANDSTILL:
         return averaged.modes, AVERAGED
-    fit = floquet.interpolate(each.azimuths, averaged.matrices)
+    fit = floquet.interpolate(azimuth_set.azimuths, averaged.matrices)
     if not fit.harmonics:
         return averaged.modes, AVERAGED
-    near, adjoints, shapes = averaged.vectors
+    eigenvalues, adjoints, shapes = averaged.vectors
     structural = np.array([mode.structural > 0.5 for mode in averaged.modes])
     parts = averaged.matrices - averaged.matrices.mean(axis=0)
-    estimate = floquet.second_order(parts, each.omega, (-3, 3), near, adjoints, shapes) / np.abs(near)
+    estimate = floquet.second_order(parts, azimuth_set.omega, (-3, 3), eigenvalues, adjoints, shapes) / np.abs(
+        eigenvalues
+    )
     if not structural.any() or estimate[structural].max() < MAX_PERIODIC / 2:
         return averaged.modes, AVERAGED
-    values = floquet.exponents(fit, each.omega, near)
-    change = np.abs(values - near) / np.abs(near)
+    values = floquet.exponents(fit, azimuth_set.omega, eigenvalues)
+    change = np.abs(values - eigenvalues) / np.abs(eigenvalues)
     if change[structural].max() < MAX_PERIODIC:
         return averaged.modes, AVERAGED
     fewer = floquet.exponents(
-        floquet.interpolate(each.azimuths, averaged.matrices, fit.harmonics - 1), each.omega, near
+        floquet.interpolate(azimuth_set.azimuths, averaged.matrices, fit.harmonics - 1), azimuth_set.omega, eigenvalues
     )
     modes = tuple(
-        replace(mode, eigenvalue=complex(value), uncertainty=float(np.hypot(mode.uncertainty, abs(value - other))))
-        for mode, value, other in zip(averaged.modes, values, fewer, strict=True)
+        replace(
+            mode, eigenvalue=complex(value), uncertainty=float(np.hypot(mode.uncertainty, abs(value - coarse_value)))
+        )
+        for mode, value, coarse_value in zip(averaged.modes, values, fewer, strict=True)
     )
     return modes, FLOQUET

@@ -51,7 +51,7 @@ class LinFile:
         states: the continuous states.
         derivatives: the table of their derivatives, as states; empty if the file has none.
         A: state matrix.
-        half: half a unit in the last printed digit of every entry of A; 0 for exact zeros and ones.
+        half_unit: half a unit in the last printed digit of every entry of A; 0 for exact zeros and ones.
         digits: significant digits of the entries of A.
         overflowed: places of the file outside A where a value is printed as asterisks.
     """
@@ -69,7 +69,7 @@ class LinFile:
     states: tuple[State, ...]
     derivatives: tuple[State, ...]
     A: Array
-    half: Array
+    half_unit: Array
     digits: int
     overflowed: tuple[str, ...]
 
@@ -94,8 +94,8 @@ def text(path: Path) -> str:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file that can") from error
     if raw.startswith(b"\x1f\x8b"):
         try:
-            with gzip.open(io.BytesIO(raw)) as packed:
-                raw = packed.read(LARGEST_DATA + 1)
+            with gzip.open(io.BytesIO(raw)) as compressed:
+                raw = compressed.read(LARGEST_DATA + 1)
         except (OSError, EOFError, zlib.error) as error:
             raise CaseError(f"{path}: damaged gzip file: copy or compress it again") from error
         if len(raw) > LARGEST_DATA:
@@ -147,13 +147,13 @@ def parsed(path: Path, content: str) -> LinFile:
     rows = _matrix(path, lines, len(states))
     A = _numbers(path, rows)
     decimals, exponents = _format(rows)
-    half, digits = _rounding(A, decimals, exponents)
+    half_unit, digits = _rounding(A, decimals, exponents)
     head = " ".join(lines[:4])
     version, date = _VERSION.search(head), _DATE.search(head)
     for name in ("Rotor Speed", "Azimuth"):
         if not math.isfinite(fields.get(name, math.nan)):
-            what = "overflowed its format" if name in fields else "missing"
-            raise CaseError(f"{path}: {name}: {what} in the header: give the file as OpenFAST wrote it")
+            problem = "overflowed its format" if name in fields else "missing"
+            raise CaseError(f"{path}: {name}: {problem} in the header: give the file as OpenFAST wrote it")
     return LinFile(
         path,
         (version[1] or version[2]) if version else "unknown",
@@ -168,7 +168,7 @@ def parsed(path: Path, content: str) -> LinFile:
         states,
         derivatives,
         A,
-        half,
+        half_unit,
         digits,
         tuple(overflowed),
     )

@@ -106,12 +106,9 @@ def findings(table: ModeTable) -> Iterator[Finding]:
             float(len(negative)),
         )
     if table.unit == "Hz":
-        nothing = np.zeros(len(table.points))
+        zeros = np.zeros(len(table.points))
         yield from order_lines(
-            [
-                TrackedFrequency(n, table.points, f, nothing)
-                for n, f in zip(table.names, table.frequencies, strict=True)
-            ],
+            [TrackedFrequency(n, table.points, f, zeros) for n, f in zip(table.names, table.frequencies, strict=True)],
             table.name,
         )
     grow = [name for name, d in zip(table.names, table.damping, strict=True) if (d < 0).any()]

@@ -90,67 +90,71 @@ class Spectrum:
         )
 
 
-def spectrum(each: AzimuthSet, A: Array) -> Spectrum:
+def spectrum(azimuth_set: AzimuthSet, A: Array) -> Spectrum:
     """The modes of state matrices ``A``, which may differ from those of the files by a correction."""
-    matrices = fixed_frame(each, A)
+    matrices = fixed_frame(azimuth_set, A)
     values, left, right = cast("tuple[Complex, Complex, Complex]", eig(matrices.mean(axis=0), left=True, right=True))
     norms = np.einsum("ij,ij->j", left.conj(), right)
     size = float(np.abs(values).max(initial=0.0))
     oscillates = values.imag > max(MIN_OSCILLATION, 1e-12 * size)
-    kept = [k for k in sorted(np.flatnonzero(oscillates), key=lambda k: abs(values[k])) if abs(norms[k]) > 1e-300]
-    shapes, adjoints = right[:, kept], (left[:, kept].conj() / norms[kept]).T
-    uncertainties = _rounding(each, header_sensitivity(each, A), adjoints, shapes)
+    indices = [k for k in sorted(np.flatnonzero(oscillates), key=lambda k: abs(values[k])) if abs(norms[k]) > 1e-300]
+    shapes, adjoints = right[:, indices], (left[:, indices].conj() / norms[indices]).T
+    uncertainties = _rounding(azimuth_set, header_sensitivity(azimuth_set, A), adjoints, shapes)
     modes = [
-        _named(each, complex(values[k]), float(u), shape, adjoint)
-        for k, u, shape, adjoint in zip(kept, uncertainties, shapes.T, adjoints, strict=True)
+        _named(azimuth_set, complex(values[k]), float(u), shape, adjoint)
+        for k, u, shape, adjoint in zip(indices, uncertainties, shapes.T, adjoints, strict=True)
     ]
     return Spectrum(matrices, _numbered(_distinct(modes)), values[~oscillates & (values.imag >= 0)])
 
 
-def header_sensitivity(each: AzimuthSet, A: Array) -> tuple[Array, Array]:
+def header_sensitivity(azimuth_set: AzimuthSet, A: Array) -> tuple[Array, Array]:
     """Change of the matrices in the fixed frame by half a unit in the last digit of azimuths and of rotor speeds."""
-    units = np.array([file.unit for file in each.files])
-    base = fixed_frame(each, A)
-    faster = np.array([file.rotor_speed for file in each.files]) + units
-    return fixed_frame(each, A, each.azimuths + units) - base, fixed_frame(each, A, speeds=faster) - base
+    units = np.array([file.unit for file in azimuth_set.files])
+    base = fixed_frame(azimuth_set, A)
+    faster = np.array([file.rotor_speed for file in azimuth_set.files]) + units
+    return fixed_frame(azimuth_set, A, azimuth_set.azimuths + units) - base, fixed_frame(
+        azimuth_set, A, speeds=faster
+    ) - base
 
 
-def _rounding(each: AzimuthSet, header: tuple[Array, Array], adjoints: Complex, shapes: Complex) -> Array:
+def _rounding(azimuth_set: AzimuthSet, header: tuple[Array, Array], adjoints: Complex, shapes: Complex) -> Array:
     """Uncertainties of eigenvalues by the rounding of all printed numbers, whose errors are independent and uniform.
 
     δλ = Σ l_i δA_ij r_j has the standard deviation √(Σ h² |Σ l_i r_j|² / 3) with half a unit in the last digit h. Entries of
     equal size have one error, with their signs: those of equal blades, and of one blade at azimuths that others pass, too.
     """
-    files = len(each.files)
-    inexact = each.half > 0
-    _, first, group = np.unique(np.abs(each.A[inexact]), return_index=True, return_inverse=True)
-    half = each.half[inexact][first]
+    files = len(azimuth_set.files)
+    inexact = azimuth_set.half_unit > 0
+    _, first, group = np.unique(np.abs(azimuth_set.A[inexact]), return_index=True, return_inverse=True)
+    half_unit = azimuth_set.half_unit[inexact][first]
     ends = np.cumsum(np.count_nonzero(inexact, axis=(1, 2)))[:-1]
-    signs, groups = np.split(np.sign(each.A[inexact]), ends), np.split(group, ends)
+    signs, groups = np.split(np.sign(azimuth_set.A[inexact]), ends), np.split(group, ends)
     transforms = [
-        states_of_components(each, float(psi), file.rotor_speed)
-        for psi, file in zip(each.azimuths, each.files, strict=True)
+        states_of_components(azimuth_set, float(psi), file.rotor_speed)
+        for psi, file in zip(azimuth_set.azimuths, azimuth_set.files, strict=True)
     ]
     out = np.empty(len(adjoints))
     for m, (adjoint, shape) in enumerate(zip(adjoints, shapes.T, strict=True)):
-        sums = np.zeros(len(half), complex)
+        sums = np.zeros(len(half_unit), complex)
         for (P, inverse), where, sign, index in zip(transforms, inexact, signs, groups, strict=True):
             change = np.asarray(np.outer(adjoint @ inverse, P @ shape)[where] * sign, dtype=np.complex128)
-            sums += np.bincount(index, change.real, len(half)) + 1j * np.bincount(index, change.imag, len(half))
-        variance = float(np.sum((half * np.abs(sums)) ** 2))
-        turned, faster = (np.einsum("j,kj->k", shape, adjoint @ each_) for each_ in header)
-        variance += float(np.sum(np.abs(turned) ** 2) + np.abs(np.sum(faster)) ** 2)
+            sums += np.bincount(index, change.real, len(half_unit)) + 1j * np.bincount(
+                index, change.imag, len(half_unit)
+            )
+        variance = float(np.sum((half_unit * np.abs(sums)) ** 2))
+        by_azimuth, by_speed = (np.einsum("j,kj->k", shape, adjoint @ sensitivity) for sensitivity in header)
+        variance += float(np.sum(np.abs(by_azimuth) ** 2) + np.abs(np.sum(by_speed)) ** 2)
         out[m] = COVERAGE * np.sqrt(variance / 3) / files
     return out
 
 
-def _named(each: AzimuthSet, value: complex, uncertainty: float, shape: Complex, adjoint: Complex) -> Mode:
+def _named(azimuth_set: AzimuthSet, value: complex, uncertainty: float, shape: Complex, adjoint: Complex) -> Mode:
     factor = np.abs(adjoint * shape)
     factor = factor / factor.sum()
     share: dict[str, float] = defaultdict(float)
     whirling: dict[str, tuple[float, float]] = {}
-    component = components(each)
-    for i, state in enumerate(each.states):
+    component = components(azimuth_set)
+    for i, state in enumerate(azimuth_set.states):
         if i in component:
             family, part = state.family, component[i]
             share[f"{family} {'collective' if part == 0 else 'whirl'}"] += float(factor[i])
@@ -158,11 +162,11 @@ def _named(each: AzimuthSet, value: complex, uncertainty: float, shape: Complex,
             # an oscillation of the generator is torsion of the drivetrain; alone it turns freely
             family = "drivetrain" if state.family == "generator" else state.family
             share[family + (f" of blade {state.blade}" if state.blade else "")] += float(factor[i])
-    for group in each.groups if each.blades == BLADES else ():
+    for group in azimuth_set.groups if azimuth_set.blades == BLADES else ():
         if not group.rate:
             _, c, s = (shape[k] for k in group.members)
             weight = sum(float(factor[k]) for k in group.members[1:])
-            family = each.states[group.members[0]].family
+            family = azimuth_set.states[group.members[0]].family
             before = whirling.get(family, (0.0, 0.0))
             size = max(abs(c) ** 2 + abs(s) ** 2, 1e-300)
             whirling[family] = (
@@ -175,15 +179,15 @@ def _named(each: AzimuthSet, value: complex, uncertainty: float, shape: Complex,
         family = name.removesuffix(" whirl")
         forward, backward = whirling.get(family, (0.0, 0.0))
         name = f"{family} {'forward' if forward > backward else 'backward'}"
-    structural = float(sum(factor[i] for i, state in enumerate(each.states) if state.module in STRUCTURAL))
+    structural = float(sum(factor[i] for i, state in enumerate(azimuth_set.states) if state.module in STRUCTURAL))
     return Mode(name, confidence, tuple(ordered[:4]), value, uncertainty, structural, shape, adjoint)
 
 
-def components(each: AzimuthSet) -> dict[int, int]:
+def components(azimuth_set: AzimuthSet) -> dict[int, int]:
     """Index of a state in the fixed frame → 0 collective, 1 cosine, 2 sine; only states of three blades are in it."""
-    if each.blades != BLADES:
+    if azimuth_set.blades != BLADES:
         return {}
-    return {index: k for group in each.groups for k, index in enumerate(group.members)}
+    return {index: k for group in azimuth_set.groups for k, index in enumerate(group.members)}
 
 
 def _distinct(modes: Sequence[Mode]) -> list[Mode]:

@@ -20,60 +20,60 @@ class NodeTriplet:
 
     blade: int
     node: int
-    what: str
+    motion: str
     displacements: tuple[int, ...]
     rates: tuple[int, ...]
 
 
-def triplets(each: AzimuthSet) -> tuple[NodeTriplet, ...]:
+def triplets(azimuth_set: AzimuthSet) -> tuple[NodeTriplet, ...]:
     """All triplets of translations and rotations."""
-    rate_of = dict(each.pairs)
+    rate_of = dict(azimuth_set.pairs)
     indices: dict[tuple[int, int, str], dict[int, int]] = {}
-    for i, state in enumerate(each.states):
+    for i, state in enumerate(azimuth_set.states):
         if state.module == "BD" and state.blade and not state.rate and i in rate_of and (at := state.direction):
             indices.setdefault((state.blade, at[2], at[0]), {})[at[1]] = i
     return tuple(
-        NodeTriplet(blade, node, what, tuple(axes[k] for k in range(3)), tuple(rate_of[axes[k]] for k in range(3)))
-        for (blade, node, what), axes in indices.items()
+        NodeTriplet(blade, node, motion, tuple(axes[k] for k in range(3)), tuple(rate_of[axes[k]] for k in range(3)))
+        for (blade, node, motion), axes in indices.items()
         if len(axes) == 3
     )
 
 
-def coriolis_content(each: AzimuthSet) -> float | None:
+def coriolis_content(azimuth_set: AzimuthSet) -> float | None:
     """Coriolis terms of the translations relative to those of a rotating frame: 1 in a rotating frame, 0 in a frozen one.
 
     In A, the rate of a node's displacement in Y acts on its acceleration in Z by −2 Ω, and in Z on Y by 2 Ω. The mean over
     nodes, blades and azimuths of their difference, over 4 Ω; damping and gravity contribute equal parts with opposite
     signs. None without nodes or rotation.
     """
-    omega = each.omega
-    nodes = [t for t in triplets(each) if t.what == "translational"]
+    omega = azimuth_set.omega
+    nodes = [t for t in triplets(azimuth_set) if t.motion == "translational"]
     if not nodes or abs(omega) < 1e-3:
         return None
-    terms = [each.A[:, t.rates[1], t.rates[2]] - each.A[:, t.rates[2], t.rates[1]] for t in nodes]
+    terms = [azimuth_set.A[:, t.rates[1], t.rates[2]] - azimuth_set.A[:, t.rates[2], t.rates[1]] for t in nodes]
     return float(np.mean(terms) / (4 * omega))
 
 
-def angular_velocities(each: AzimuthSet) -> dict[int, Array]:
+def angular_velocities(azimuth_set: AzimuthSet) -> dict[int, Array]:
     """Angular velocity of each blade in its own axes, rad/s (azimuth, axis): that of its nodes nearest the root."""
     out: dict[int, Array] = {}
-    rotations = sorted((t for t in triplets(each) if t.what == "rotational"), key=lambda t: t.node)
+    rotations = sorted((t for t in triplets(azimuth_set) if t.motion == "rotational"), key=lambda t: t.node)
     for t in rotations:
-        out.setdefault(t.blade, each.values[:, list(t.rates)])
+        out.setdefault(t.blade, azimuth_set.values[:, list(t.rates)])
     return out
 
 
-def rotated(each: AzimuthSet, A: Array) -> Array:
+def rotated(azimuth_set: AzimuthSet, A: Array) -> Array:
     """State matrices with the nodes' states in the rotating frame, from those in the frozen frame.
 
     The states of a triplet are q, q̇ in the rotating frame and q, v = q̇ + ω × q in the frozen one, hence
     A_r = S A S⁻¹ + diag(−ω̃), S = [[1, 0], [−ω̃, 1]] (OpenFAST pull request 3400).
     """
-    omega = angular_velocities(each)
+    omega = angular_velocities(azimuth_set)
     out = np.empty_like(A)
     for k in range(len(A)):
-        S, turning = np.eye(len(each.states)), np.zeros_like(A[k])
-        for t in triplets(each):
+        S, turning = np.eye(len(azimuth_set.states)), np.zeros_like(A[k])
+        for t in triplets(azimuth_set):
             w = omega[t.blade][k]
             cross = np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
             S[np.ix_(t.rates, t.displacements)] = -cross

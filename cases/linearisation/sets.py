@@ -45,7 +45,7 @@ class AzimuthSet:
         files: the files, by azimuth.
         states: the states in the order of all matrices; flags and values are those of the first file.
         A: state matrices (azimuth, row, column).
-        half: half a unit in the last digit of ``A``.
+        half_unit: half a unit in the last digit of ``A``.
         values: operating points (azimuth, state).
         accelerations: derivatives of the states at the operating point; NaN where a file has none.
         order: for each file the indices that sort its states; all equal if the files have one order.
@@ -55,7 +55,7 @@ class AzimuthSet:
     files: tuple[LinFile, ...]
     states: tuple[State, ...]
     A: Array
-    half: Array
+    half_unit: Array
     values: Array
     accelerations: Array
     order: tuple[tuple[int, ...], ...]
@@ -110,16 +110,16 @@ class AzimuthSet:
         return tuple(out)
 
 
-def first_azimuths(each: AzimuthSet, count: int) -> AzimuthSet:
+def first_azimuths(linearised: AzimuthSet, count: int) -> AzimuthSet:
     """A set with the first ``count`` of its files."""
     return replace(
-        each,
-        files=each.files[:count],
-        A=each.A[:count],
-        half=each.half[:count],
-        values=each.values[:count],
-        accelerations=each.accelerations[:count],
-        order=each.order[:count],
+        linearised,
+        files=linearised.files[:count],
+        A=linearised.A[:count],
+        half_unit=linearised.half_unit[:count],
+        values=linearised.values[:count],
+        accelerations=linearised.accelerations[:count],
+        order=linearised.order[:count],
     )
 
 
@@ -139,7 +139,7 @@ def collect(files: Sequence[LinFile]) -> tuple[AzimuthSet, ...]:
     for file in files:
         groups[file.path.parent, stem(file.path)].append(file)
     sets = [azimuth_set(name, group) for (_, name), group in groups.items()]
-    return tuple(sorted(sets, key=lambda each: (each.omega, np.nan_to_num(each.files[0].wind_speed), each.name)))
+    return tuple(sorted(sets, key=lambda point: (point.omega, np.nan_to_num(point.files[0].wind_speed), point.name)))
 
 
 def azimuth_set(name: str, files: Sequence[LinFile]) -> AzimuthSet:
@@ -161,20 +161,20 @@ def azimuth_set(name: str, files: Sequence[LinFile]) -> AzimuthSet:
     for file in by_azimuth:
         index = {state.key: i for i, state in enumerate(file.states)}
         if set(index) != set(keys):
-            other = next(iter(set(index) ^ set(keys)))
+            differing = next(iter(set(index) ^ set(keys)))
             raise CaseError(
-                f"{file.path}: state {other[0][:80]!r} is not in all files of {name}: they are of different models: give the "
-                "files of one model"
+                f"{file.path}: state {differing[0][:80]!r} is not in all files of {name}: they are of different models: give "
+                "the files of one model"
             )
         order.append(tuple(index[key] for key in keys))
-    sorted_by = [np.array(each) for each in order]
+    sorted_by = [np.array(indices) for indices in order]
     several = list(zip(by_azimuth, sorted_by, strict=True))
     return AzimuthSet(
         name,
         tuple(by_azimuth),
         states,
         np.array([file.A[np.ix_(k, k)] for file, k in several]),
-        np.array([file.half[np.ix_(k, k)] for file, k in several]),
+        np.array([file.half_unit[np.ix_(k, k)] for file, k in several]),
         np.array([[file.states[i].value for i in k] for file, k in several]),
         np.array(
             [

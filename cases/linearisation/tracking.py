@@ -18,22 +18,24 @@ def track(sets: Sequence[JudgedSet]) -> tuple[TrackedMode, ...]:
     """Track modes from set to set; sets with other states begin new modes."""
     rows: list[list[Mode | None]] = []
     last: list[int] = []
-    for k, judged in enumerate(sets):
-        current: list[int | None] = [None] * len(judged.modes)
-        comparable = k > 0 and {s.key for s in sets[k - 1].each.states} == {s.key for s in judged.each.states}
-        if comparable and last and judged.modes:
-            index = [judged.each.index[s.key] for s in sets[k - 1].each.states]
+    for k, judged_set in enumerate(sets):
+        current: list[int | None] = [None] * len(judged_set.modes)
+        comparable = k > 0 and {s.key for s in sets[k - 1].azimuth_set.states} == {
+            s.key for s in judged_set.azimuth_set.states
+        }
+        if comparable and last and judged_set.modes:
+            index = [judged_set.azimuth_set.index[s.key] for s in sets[k - 1].azimuth_set.states]
             adjoints = np.array([_mode(rows[row]).adjoint for row in last])
-            shapes = np.array([mode.shape[index] for mode in judged.modes]).T
+            shapes = np.array([mode.shape[index] for mode in judged_set.modes]).T
             overlap = np.abs(adjoints @ shapes)
             before = np.array([_mode(rows[row]).frequency for row in last])[:, None]
-            now = np.array([mode.frequency for mode in judged.modes])[None, :]
+            now = np.array([mode.frequency for mode in judged_set.modes])[None, :]
             cost = -np.minimum(overlap, 1) + 0.5 * np.abs(np.log(now / before))
             for i, j in zip(*linear_sum_assignment(cost), strict=True):
                 if overlap[i, j] > MIN_OVERLAP:
                     current[j] = last[i]
         last = []
-        for mode, row in zip(judged.modes, current, strict=True):
+        for mode, row in zip(judged_set.modes, current, strict=True):
             if row is None:
                 rows.append([None] * k)
                 row = len(rows) - 1
@@ -59,7 +61,7 @@ def _label(row: Sequence[Mode | None]) -> str:
 
 def lines(sets: Sequence[JudgedSet], tracked: Sequence[TrackedMode]) -> tuple[Finding, ...]:
     """Multiples of the rotor speed among the tracked modes."""
-    speeds = np.array([judged.each.omega for judged in sets]) / (2 * np.pi)
+    speeds = np.array([judged_set.azimuth_set.omega for judged_set in sets]) / (2 * np.pi)
     return order_lines(
         [
             TrackedFrequency(
@@ -76,8 +78,8 @@ def lines(sets: Sequence[JudgedSet], tracked: Sequence[TrackedMode]) -> tuple[Fi
 
 def drift(sets: Sequence[JudgedSet]) -> tuple[Finding, ...]:
     """Versions that differ between operating points."""
-    versions = sorted({file.version for judged in sets for file in judged.each.files})
-    within = any(len({file.version for file in judged.each.files}) > 1 for judged in sets)
+    versions = sorted({file.version for judged_set in sets for file in judged_set.azimuth_set.files})
+    within = any(len({file.version for file in judged_set.azimuth_set.files}) > 1 for judged_set in sets)
     if len(sets) < 2 or len(versions) < 2 or within:
         return ()
     return (

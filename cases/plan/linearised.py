@@ -47,7 +47,7 @@ def speeds(added: Sequence[str]) -> tuple[float, ...]:
         CaseError: as ``read``.
     """
     files = [text.partition("=")[2] for text in added]
-    return tuple(sorted({judged.each.omega for file in files if matches(file) for judged in _judged(file)}))
+    return tuple(sorted({judged.azimuth_set.omega for file in files if matches(file) for judged in _judged(file)}))
 
 
 def columns(
@@ -57,7 +57,7 @@ def columns(
     out = []
     for results in added:
         if results.linearised:
-            files = sum(len(judged.each.files) for judged in results.linearised)
+            files = sum(len(judged.azimuth_set.files) for judged in results.linearised)
             version = f"from {Path(results.path).name}, {files} file{'' if files == 1 else 's'}"
             head = Head(case, results.name, version, "code", target, "nothing", motions)
             work = partial(rows, head, fst, pitch, results.linearised)

@@ -14,8 +14,8 @@ from ...cases.linearisation.machine.split import (
     NODES,
     REST,
     SHAPES,
-    Beside,
     Comparison,
+    ModeComparison,
 )
 from ...cases.linearisation.mode_tables import ModeTable
 from ...cases.linearisation.modes import Mode
@@ -35,12 +35,12 @@ MOST = 20
 
 def verdict(judgement: Judgement) -> str:
     """The first line: the verdict, what was read, and the number of findings."""
-    files = sum(len(judged.each.files) for judged in judgement.sets)
+    files = sum(len(judged_set.azimuth_set.files) for judged_set in judgement.sets)
     parts = [count(files, "linearisation"), count(len(judgement.sets), "operating point")] if files else []
     parts += [count(len(judgement.tables), "table of modes", "tables of modes")] if judgement.tables else []
     defects = sum(finding.level == DEFECT for finding in judgement.findings)
-    counted = f"; {count(defects, 'defect')}" if defects else ""
-    return f"{judgement.verdict}: {MEANING[judgement.verdict]} ({', '.join(parts)}{counted})"
+    tally = f"; {count(defects, 'defect')}" if defects else ""
+    return f"{judgement.verdict}: {MEANING[judgement.verdict]} ({', '.join(parts)}{tally})"
 
 
 def findings(judgement: Judgement) -> Iterator[str]:
@@ -51,18 +51,18 @@ def findings(judgement: Judgement) -> Iterator[str]:
         yield f"{MARKS[finding.level]} {where}{finding}"
 
 
-def modes(judgement: Judgement, width: int, every: bool = False) -> Iterator[Table]:
+def modes(judgement: Judgement, width: int, all_modes: bool = False) -> Iterator[Table]:
     """Tables of the named modes: of one operating point in full, of several as a Campbell diagram."""
     if len(judgement.sets) == 1:
-        yield from _one(judgement.sets[0], width, every)
+        yield from _one(judgement.sets[0], width, all_modes)
     elif judgement.sets:
-        yield from _several(judgement, width, every)
+        yield from _several(judgement, width, all_modes)
     for table in judgement.tables:
-        yield from _listed(table, width, every)
+        yield from _listed(table, width, all_modes)
 
 
-def _one(judged: JudgedSet, width: int, every: bool) -> Iterator[Table]:
-    shown = _shown(judged.modes, every)
+def _one(judged_set: JudgedSet, width: int, all_modes: bool) -> Iterator[Table]:
+    selection = _shown(judged_set.modes, all_modes)
     rows = [
         (
             mode.name,
@@ -71,18 +71,18 @@ def _one(judged: JudgedSet, width: int, every: bool) -> Iterator[Table]:
             f"{100 * mode.damping:.3g}",
             f"{100 * mode.confidence:.0f}",
         )
-        for mode in shown
+        for mode in selection
     ]
-    method = f", {judged.method}" if len(judged.each.files) > 1 else ""
-    title = f"{judged.each.name}: {_rpm(judged)}{method}"
+    method = f", {judged_set.method}" if len(judged_set.azimuth_set.files) > 1 else ""
+    title = f"{judged_set.azimuth_set.name}: {_rpm(judged_set)}{method}"
     head = ("mode", "Hz", "± %", "damping %", "participation %")
     yield from tables(head, rows, width, title)
 
 
-def _several(judgement: Judgement, width: int, every: bool) -> Iterator[Table]:
-    head = ["mode", *(f"{judged.each.omega * 30 / np.pi:.4g} rpm" for judged in judgement.sets)]
-    rows = [track for track in judgement.tracked if every or _structural(track)]
-    rows = rows if every else rows[:MOST]
+def _several(judgement: Judgement, width: int, all_modes: bool) -> Iterator[Table]:
+    head = ["mode", *(f"{judged_set.azimuth_set.omega * 30 / np.pi:.4g} rpm" for judged_set in judgement.sets)]
+    rows = [track for track in judgement.tracked if all_modes or _structural(track)]
+    rows = rows if all_modes else rows[:MOST]
     yield from tables(
         head,
         [(t.name, *("" if m is None else f"{m.frequency:.5g}" for m in t.at)) for t in rows],
@@ -97,7 +97,7 @@ def _several(judgement: Judgement, width: int, every: bool) -> Iterator[Table]:
     )
 
 
-def _listed(table: ModeTable, width: int, every: bool) -> Iterator[Table]:
+def _listed(table: ModeTable, width: int, all_modes: bool) -> Iterator[Table]:
     """Frequencies, and damping where it is given, of a table of modes; the share of the motion that names a mode."""
     factor, unit = (60.0, "rpm") if table.unit == "Hz" else (1.0, table.unit)
     head = ["mode", *(f"{factor * point:.4g} {unit}" for point in table.points)]
@@ -106,16 +106,16 @@ def _listed(table: ModeTable, width: int, every: bool) -> Iterator[Table]:
         (name, *share, *("" if np.isnan(f) else f"{f:.5g}" for f in values))
         for name, share, values in zip(table.names, shares, table.frequencies, strict=True)
     ]
-    shown = len(rows) if every else MOST
-    named = ["participation %"] if table.shares else []
-    yield from tables([head[0], *named, *head[1:]], rows[:shown], width, f"{table.name}: frequency in Hz")
+    limit = len(rows) if all_modes else MOST
+    share_column = ["participation %"] if table.shares else []
+    yield from tables([head[0], *share_column, *head[1:]], rows[:limit], width, f"{table.name}: frequency in Hz")
     damped = [
         (name, *("" if np.isnan(value) else f"{100 * value:.3g}" for value in values))
         for name, values in zip(table.names, table.damping, strict=True)
         if not np.isnan(values).all()
     ]
     if damped:
-        yield from tables(head, damped[:shown], width, f"{table.name}: damping in %")
+        yield from tables(head, damped[:limit], width, f"{table.name}: damping in %")
 
 
 PARTS = (SHAPES, NODES, GRAVITY, DEFLECTION, AERODYNAMICS, REST)
@@ -126,11 +126,13 @@ MIN_ORIGIN = 1e-3
 
 def decks(judgement: Judgement, compared: Sequence[Comparison], width: int) -> Iterator[Table | str]:
     """Tables of the modes of each operating point beside those of Southwell's turbine, with the parts of the differences."""
-    for judged, comparison in zip(judgement.sets, compared, strict=False):
+    for judged_set, comparison in zip(judgement.sets, compared, strict=False):
         parts = [name for name in PARTS if any(name in pair.parts for pair in comparison.modes)]
         head = ("mode", "Hz", "± %", "Southwell Hz", "MAC", "difference %", *(f"{name} %" for name in parts))
         rows = [_beside(pair, parts) for pair in comparison.modes]
-        yield from tables(head, rows, width, f"{judged.each.name}: {_rpm(judged)}, beside Southwell's turbine in vacuo")
+        yield from tables(
+            head, rows, width, f"{judged_set.azimuth_set.name}: {_rpm(judged_set)}, beside Southwell's turbine in vacuo"
+        )
         origins = [
             (pair.mode.name, pair.origin)
             for pair in comparison.modes
@@ -139,10 +141,10 @@ def decks(judgement: Judgement, compared: Sequence[Comparison], width: int) -> I
         if origins:
             yield from tables(("mode", "largest term beyond the structure"), origins, width, "")
         if comparison.remark:
-            yield f"{judged.each.name}: {comparison.remark}"
+            yield f"{judged_set.azimuth_set.name}: {comparison.remark}"
 
 
-def _beside(pair: Beside, parts: Sequence[str]) -> tuple[str, ...]:
+def _beside(pair: ModeComparison, parts: Sequence[str]) -> tuple[str, ...]:
     return (
         pair.mode.name,
         f"{pair.mode.frequency:.5g}",
@@ -158,7 +160,7 @@ def _percent(value: float) -> str:
     return f"{round(100 * value, 2):+.2f}".replace("-0.00", "0.00").replace("+0.00", "0.00")
 
 
-def _beyond(pair: Beside) -> float:
+def _beyond(pair: ModeComparison) -> float:
     """Size of what is no part of the structure, relative."""
     return max(abs(pair.parts.get(name, 0.0)) for name in (AERODYNAMICS, REST))
 
@@ -167,8 +169,8 @@ def _structural(track: TrackedMode) -> bool:
     return any(mode is not None and mode.structural > 0.5 for mode in track.at)
 
 
-def _shown(named: tuple[Mode, ...], every: bool) -> list[Mode]:
-    return list(named) if every else [mode for mode in named if mode.structural > 0.5][:MOST]
+def _shown(modes: tuple[Mode, ...], all_modes: bool) -> list[Mode]:
+    return list(modes) if all_modes else [mode for mode in modes if mode.structural > 0.5][:MOST]
 
 
 def _uncertainty(mode: Mode) -> str:
@@ -176,10 +178,10 @@ def _uncertainty(mode: Mode) -> str:
     return "?" if not np.isfinite(percent) or percent >= 100 else f"{percent:.2g}"
 
 
-def _rpm(judged: JudgedSet) -> str:
-    wind = judged.each.files[0].wind_speed
+def _rpm(judged_set: JudgedSet) -> str:
+    wind = judged_set.azimuth_set.files[0].wind_speed
     at = f" at {wind:g} m/s" if np.isfinite(wind) and wind > 0 else ""
-    return f"{judged.each.omega * 30 / np.pi:.4g} rpm{at}, {count(len(judged.each.files), 'azimuth')}"
+    return f"{judged_set.azimuth_set.omega * 30 / np.pi:.4g} rpm{at}, {count(len(judged_set.azimuth_set.files), 'azimuth')}"
 
 
 def plain(judgement: Judgement, compared: Sequence[Comparison] = ()) -> dict[str, object]:
@@ -189,15 +191,15 @@ def plain(judgement: Judgement, compared: Sequence[Comparison] = ()) -> dict[str
         "findings": [_plain_finding(finding) for finding in judgement.findings],
         "operating_points": [
             {
-                "name": judged.each.name,
-                "files": [str(file.path) for file in judged.each.files],
-                "omega_rad_s": judged.each.omega,
-                "wind_speed_m_s": _finite(judged.each.files[0].wind_speed),
-                "method": judged.method,
-                "modes": [_plain_mode(mode) for mode in judged.modes],
+                "name": judged_set.azimuth_set.name,
+                "files": [str(file.path) for file in judged_set.azimuth_set.files],
+                "omega_rad_s": judged_set.azimuth_set.omega,
+                "wind_speed_m_s": _finite(judged_set.azimuth_set.files[0].wind_speed),
+                "method": judged_set.method,
+                "modes": [_plain_mode(mode) for mode in judged_set.modes],
                 **(_plain_comparison(compared[k]) if k < len(compared) else {}),
             }
-            for k, judged in enumerate(judgement.sets)
+            for k, judged_set in enumerate(judgement.sets)
         ],
         "tables": [_plain_table(table) for table in judgement.tables],
     }
@@ -248,7 +250,7 @@ def _plain_finding(finding: Finding) -> dict[str, object]:
         "name": finding.name,
         "level": finding.level,
         "where": finding.where,
-        "what": finding.what,
+        "what": finding.observation,
         "remedy": finding.remedy,
         "value": _finite(finding.value),
     }

@@ -34,7 +34,7 @@ def findings_of(lins: Sequence[Lin]) -> tuple[Finding, ...]:
 def row(defect: Defect, findings: Sequence[Finding]) -> str:
     """The row of a defect in the table: planted, named, and what was found."""
     first = next(finding for finding in findings if finding.name in defect.names)
-    return f"| {defect.title} | {first.name} | {first.what.replace('|', '·')} |\n"
+    return f"| {defect.title} | {first.name} | {first.observation.replace('|', '·')} |\n"
 
 
 def sessions(text: str) -> Iterator[tuple[str, str]]:

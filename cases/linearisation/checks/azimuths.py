@@ -36,17 +36,17 @@ EXCHANGE = (
 """Remedy for blades that are exchanged."""
 
 
-def coverage(each: AzimuthSet) -> Iterator[Finding]:
+def coverage(azimuth_set: AzimuthSet) -> Iterator[Finding]:
     """Gaps, repeated azimuths, and azimuths that show too few phases of blade passing."""
-    if abs(each.omega) < STANDSTILL:
+    if abs(azimuth_set.omega) < STANDSTILL:
         return
-    n = len(each.files)
-    psi = np.sort(np.mod(each.azimuths, 2 * np.pi))
+    n = len(azimuth_set.files)
+    psi = np.sort(np.mod(azimuth_set.azimuths, 2 * np.pi))
     if n == 1:
         yield Finding(
             "one azimuth",
             LIMIT,
-            each.name,
+            azimuth_set.name,
             "one azimuth does not show whether the equations depend on the azimuth",
             "linearise at 12 or more azimuths of a revolution (NLinTimes)",
             1.0,
@@ -57,7 +57,7 @@ def coverage(each: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "repeated azimuths",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"two files have the azimuth {np.degrees(psi[gaps.argmin()]):.2f}°",
             "give each azimuth once",
             float(np.degrees(gaps.min())),
@@ -66,43 +66,43 @@ def coverage(each: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "missing azimuths",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"{n} azimuths leave a gap of {np.degrees(gaps.max()):.0f}° (even spacing: {360 / n:.0f}°)",
             "linearise at azimuths that cover the revolution evenly, or give the missing files",
             float(np.degrees(gaps.max())),
         )
-    elif (shown := phases(each.azimuths)) < 3:
+    elif (phase_count := phases(azimuth_set.azimuths)) < 3:
         yield Finding(
             "few azimuths",
             LIMIT,
-            each.name,
-            f"{n} azimuths show {shown} phase{'s' if shown > 1 else ''} of blade passing",
+            azimuth_set.name,
+            f"{n} azimuths show {phase_count} phase{'s' if phase_count > 1 else ''} of blade passing",
             "variation with three times the rotor speed is invisible: linearise at 12 or more azimuths",
-            float(shown),
+            float(phase_count),
         )
 
 
-def steadiness(each: AzimuthSet) -> Iterator[Finding]:
+def steadiness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
     """Rotor speed, acceleration of the generator, azimuths of the header, and periodic deflections of the blades."""
-    if abs(each.omega) < STANDSTILL:
+    if abs(azimuth_set.omega) < STANDSTILL:
         return
-    speeds = np.array([file.rotor_speed for file in each.files])
+    speeds = np.array([file.rotor_speed for file in azimuth_set.files])
     reasons: list[tuple[str, float]] = []
-    spread = float(np.ptp(speeds) / abs(each.omega))
+    spread = float(np.ptp(speeds) / abs(azimuth_set.omega))
     if spread > MAX_SPEED_SPREAD:
         reasons.append((f"the rotor speed varies by {100 * spread:.2g} % between the azimuths", spread))
-    for i, state in enumerate(each.states):
-        if state.family == "generator" and state.rate and np.isfinite(each.accelerations[:, i]).all():
-            change = float(np.abs(each.accelerations[:, i]).max() * 2 * np.pi / each.omega**2)
+    for i, state in enumerate(azimuth_set.states):
+        if state.family == "generator" and state.rate and np.isfinite(azimuth_set.accelerations[:, i]).all():
+            change = float(np.abs(azimuth_set.accelerations[:, i]).max() * 2 * np.pi / azimuth_set.omega**2)
             if change > MAX_ACCELERATION:
                 reasons.append((f"the generator changes its speed by {100 * change:.2g} % in a revolution", change))
-    aperiodic = _aperiodic(each, (0, 1, 2))
-    exchanged = _aperiodic(each, (0, 2, 1)) if aperiodic > MAX_APERIODIC else 0.0
+    aperiodic = _aperiodic(azimuth_set, (0, 1, 2))
+    exchanged = _aperiodic(azimuth_set, (0, 2, 1)) if aperiodic > MAX_APERIODIC else 0.0
     if aperiodic > MAX_APERIODIC and exchanged < aperiodic / 5:
         yield Finding(
             "blades exchanged",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"deflections of the blades deviate by {100 * aperiodic:.2g} % from a periodic motion, with blades 2 and 3 "
             f"exchanged by {100 * exchanged:.2g} %",
             EXCHANGE,
@@ -116,20 +116,20 @@ def steadiness(each: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "unsteady operating point",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             text,
             "linearise after the transients have decayed (CalcSteady, or a later LinTimes)",
             value,
         )
-    for i, state in enumerate(each.states):
-        if state.family == "generator" and not state.rate and len(each.files) > 1:
-            offset = np.exp(1j * (each.values[:, i] - each.azimuths))
+    for i, state in enumerate(azimuth_set.states):
+        if state.family == "generator" and not state.rate and len(azimuth_set.files) > 1:
+            offset = np.exp(1j * (azimuth_set.values[:, i] - azimuth_set.azimuths))
             error = float(np.abs(np.angle(offset / offset[0])).max())
             if error > np.radians(2.0):
                 yield Finding(
                     "azimuth contradicts generator",
                     DEFECT,
-                    each.name,
+                    azimuth_set.name,
                     f"azimuths of header and generator differ by {np.degrees(error):.1f}°",
                     "the header is not of this linearisation: linearise again",
                     error,
@@ -146,16 +146,16 @@ def periodic_fit(psi: Array, values: Array, highest: int = 2) -> tuple[Array, in
     return values - basis @ np.linalg.lstsq(basis, values, rcond=None)[0], harmonics
 
 
-def _aperiodic(each: AzimuthSet, order: tuple[int, ...]) -> float:
+def _aperiodic(azimuth_set: AzimuthSet, order: tuple[int, ...]) -> float:
     """Deviation of the deflections of blades in this order from one function of their azimuth, relative to their size."""
-    if each.blades != 3 or len(each.files) < 2:
+    if azimuth_set.blades != 3 or len(azimuth_set.files) < 2:
         return 0.0
-    psi = each.blade_azimuths
+    psi = azimuth_set.blade_azimuths
     worst = 0.0
-    for group in each.groups:
-        if group.rate or each.states[group.members[0]].module != "ED":
+    for group in azimuth_set.groups:
+        if group.rate or azimuth_set.states[group.members[0]].module != "ED":
             continue
-        values = each.values[:, [group.members[k] for k in order]].ravel()
+        values = azimuth_set.values[:, [group.members[k] for k in order]].ravel()
         residual, harmonics = periodic_fit(psi, values)
         size = float(np.abs(values).max())
         if np.isfinite(values).all() and harmonics and size > 1e-6:

@@ -37,41 +37,53 @@ class Difference:
     weight: float
 
 
-def differences(each: AzimuthSet) -> tuple[Difference, ...]:
+def differences(azimuth_set: AzimuthSet) -> tuple[Difference, ...]:
     """Entries of the blades' stiffness that are not one function of the blade's azimuth."""
-    if each.blades != 3 or len(each.files) < 2:
+    if azimuth_set.blades != 3 or len(azimuth_set.files) < 2:
         return ()
-    groups = [g for g in each.groups if not g.rate and g.derivative and each.states[g.members[0]].module in STRUCTURAL]
-    psi = each.blade_azimuths
+    groups = [
+        g
+        for g in azimuth_set.groups
+        if not g.rate and g.derivative and azimuth_set.states[g.members[0]].module in STRUCTURAL
+    ]
+    psi = azimuth_set.blade_azimuths
     diagonal = [
-        np.mean([np.abs(each.A[:, v, q]).mean() for v, q in zip(g.derivative or (), g.members, strict=True)])
+        np.mean([np.abs(azimuth_set.A[:, v, q]).mean() for v, q in zip(g.derivative or (), g.members, strict=True)])
         for g in groups
     ]
     out = []
     for i, a in enumerate(groups):
         for j, b in enumerate(groups):
             rows, columns = a.derivative or (), b.members
-            values = np.array([each.A[:, v, q] for v, q in zip(rows, columns, strict=True)]).T
-            half = float(np.max([each.half[:, v, q].max() for v, q in zip(rows, columns, strict=True)]))
+            values = np.array([azimuth_set.A[:, v, q] for v, q in zip(rows, columns, strict=True)]).T
+            half_unit = float(
+                np.max([azimuth_set.half_unit[:, v, q].max() for v, q in zip(rows, columns, strict=True)])
+            )
             size = float(np.sqrt(diagonal[i] * diagonal[j]))
             mean = np.abs(values).mean()
             if not size or mean < MIN_DIFFERENCE * size:
                 continue
-            odd = _odd_blade(psi, values, half)
+            odd = _odd_blade(psi, values, half_unit)
             if odd:
                 blade, ratio = odd
                 out.append(
-                    Difference(_family(each, a.members[0]), _family(each, b.members[0]), blade, ratio, mean / size)
+                    Difference(
+                        _family(azimuth_set, a.members[0]),
+                        _family(azimuth_set, b.members[0]),
+                        blade,
+                        ratio,
+                        mean / size,
+                    )
                 )
     return tuple(out)
 
 
-def _family(each: AzimuthSet, member: int) -> str:
-    state = each.states[member]
+def _family(azimuth_set: AzimuthSet, member: int) -> str:
+    state = azimuth_set.states[member]
     return state.label.partition(" of blade")[0]
 
 
-def _odd_blade(psi: Array, values: Array, half: float) -> tuple[int, float] | None:
+def _odd_blade(psi: Array, values: Array, half_unit: float) -> tuple[int, float] | None:
     """The blade whose mean differs from the others', and its ratio to theirs; None if the blades are equal."""
     means = _means(psi, values)
     if means is None:
@@ -80,7 +92,7 @@ def _odd_blade(psi: Array, values: Array, half: float) -> tuple[int, float] | No
     odd = int(np.argmax([abs(own[k] - np.delete(own, k).mean()) for k in range(3)]))
     others = np.delete(own, odd)
     difference = abs(own[odd] - others.mean())
-    noise = np.ptp(others) + residual / len(values) + 2 * half
+    noise = np.ptp(others) + residual / len(values) + 2 * half_unit
     if difference < 3 * noise or difference < MIN_DIFFERENCE * abs(others.mean()):
         return None
     return odd + 1, float(own[odd] / others.mean()) if others.mean() else float("inf")
@@ -99,7 +111,7 @@ def _means(psi: Array, values: Array) -> tuple[Array, float] | None:
     return None
 
 
-def equality(differences: tuple[Difference, ...], each: AzimuthSet) -> Iterator[Finding]:
+def equality(differences: tuple[Difference, ...], azimuth_set: AzimuthSet) -> Iterator[Finding]:
     """A blade whose stiffness or coupling differs from the others'."""
     stiff = [d for d in differences if d.row == d.column]
     reversed_sign = [d for d in differences if d.row != d.column and d.ratio < -0.5]
@@ -108,7 +120,7 @@ def equality(differences: tuple[Difference, ...], each: AzimuthSet) -> Iterator[
         yield Finding(
             "pitch reversed",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"blade {d.blade}: the coupling of {d.row} and {d.column} has the opposite sign (ratio {d.ratio:.2f}), its "
             "stiffnesses are equal",
             "its pitch or twist turns the other way: check the pitch axis and the initial pitch of the blades",
@@ -120,7 +132,7 @@ def equality(differences: tuple[Difference, ...], each: AzimuthSet) -> Iterator[
         yield Finding(
             "unequal blades",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"blade {d.blade} is stiffer than the others by {entries}"
             if d.ratio > 1
             else f"blade {d.blade} is softer than the others by {entries}",
@@ -132,7 +144,7 @@ def equality(differences: tuple[Difference, ...], each: AzimuthSet) -> Iterator[
         yield Finding(
             "unequal blades",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"blade {d.blade}: the coupling of {d.row} and {d.column} is {d.ratio:.2f} times that of the others",
             "check the blade files; multi-blade coordinates assume equal blades",
             d.ratio,

@@ -36,13 +36,13 @@ def unexplained(azimuths: Array, matrices: Array) -> Array:
     return matrices - np.array([fit.at(float(psi)) for psi in azimuths])
 
 
-def effects(each: AzimuthSet, spectrum: Spectrum, parts: Array) -> Array:
+def effects(azimuth_set: AzimuthSet, spectrum: Spectrum, parts: Array) -> Array:
     """Relative changes of the eigenvalues by each azimuth's part (mode, azimuth), to first and second order.
 
     Changes that the rounding of one file may cause are 0.
     """
     values, adjoints, shapes = spectrum.vectors
-    second = second_order(parts, each.omega, (-2, -1, 1, 2), values, adjoints, shapes) / np.abs(values)
+    second = second_order(parts, azimuth_set.omega, (-2, -1, 1, 2), values, adjoints, shapes) / np.abs(values)
     weight = np.linalg.norm(parts, axis=(1, 2))
     share = weight / max(float(weight.max()), 1e-300)
     out = []
@@ -54,36 +54,36 @@ def effects(each: AzimuthSet, spectrum: Spectrum, parts: Array) -> Array:
     return np.array(out).reshape(-1, len(parts))
 
 
-def agreement(each: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator[Finding]:
+def agreement(azimuth_set: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator[Finding]:
     """Azimuths that disagree in the fixed frame: blades exchanged, one inertia changed, or the block that differs most."""
-    if len(each.files) < 2 or not spectrum.modes:
+    if len(azimuth_set.files) < 2 or not spectrum.modes:
         return
-    parts = unexplained(each.azimuths, spectrum.matrices)
-    parts[np.abs(parts) < ROUNDING_FACTOR * _noise(each)] = 0.0
-    effect = effects(each, spectrum, parts)
+    parts = unexplained(azimuth_set.azimuths, spectrum.matrices)
+    parts[np.abs(parts) < ROUNDING_FACTOR * _noise(azimuth_set)] = 0.0
+    effect = effects(azimuth_set, spectrum, parts)
     if not effect.size or effect.max() < MAX_EFFECT:
         return
-    size = float(np.linalg.norm(unexplained(each.azimuths, spectrum.matrices)))
-    exchanged = float(np.linalg.norm(_exchanged(each, A))) if each.blades == 3 else np.inf
+    size = float(np.linalg.norm(unexplained(azimuth_set.azimuths, spectrum.matrices)))
+    exchanged = float(np.linalg.norm(_exchanged(azimuth_set, A))) if azimuth_set.blades == 3 else np.inf
     if size > EXPLAINS * exchanged:
         yield Finding(
             "blades exchanged",
             DEFECT,
-            each.name,
+            azimuth_set.name,
             f"azimuths differ in the fixed frame, with blades 2 and 3 exchanged {size / max(exchanged, 1e-300):.0f} times less",
             EXCHANGE,
             size / max(exchanged, 1e-300),
         )
         return
-    drift = _inertia(each, spectrum.matrices)
+    drift = _inertia(azimuth_set, spectrum.matrices)
     if drift:
         label, ratio, names = drift
         yield Finding(
             "version drift",
             DEFECT,
-            each.name,
-            f"in {len(names)} of {len(each.files)} files (first: {names[0]}) the equation of {label} is {ratio:.3f} times "
-            "that of the others, and the other equations follow: its inertia differs",
+            azimuth_set.name,
+            f"in {len(names)} of {len(azimuth_set.files)} files (first: {names[0]}) the equation of {label} is {ratio:.3f} "
+            "times that of the others, and the other equations follow: its inertia differs",
             "linearise all azimuths with one model and one version",
             ratio,
         )
@@ -93,39 +93,39 @@ def agreement(each: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator[Findin
     yield Finding(
         "azimuths disagree",
         DEFECT if effect.max() > LARGE_EFFECT else LIMIT,
-        each.name,
-        f"{each.files[k].path.name} changes an eigenvalue by {100 * effect.max():.2g} %, most in the equation of "
-        f"{each.states[row].label} by {each.states[column].label}",
+        azimuth_set.name,
+        f"{azimuth_set.files[k].path.name} changes an eigenvalue by {100 * effect.max():.2g} %, most in the equation of "
+        f"{azimuth_set.states[row].label} by {azimuth_set.states[column].label}",
         "linearise this azimuth again, at a steady operating point",
         float(effect.max()),
     )
 
 
-def _exchanged(each: AzimuthSet, A: Array) -> Array:
+def _exchanged(azimuth_set: AzimuthSet, A: Array) -> Array:
     """What harmonics do not explain if blades 2 and 3 are exchanged."""
-    k = np.arange(len(each.states))
-    for group in each.groups:
+    k = np.arange(len(azimuth_set.states))
+    for group in azimuth_set.groups:
         _, second, third = group.members
         k[[second, third]] = third, second
     swapped = A[:, k][:, :, k]
-    return unexplained(each.azimuths, fixed_frame(each, swapped))
+    return unexplained(azimuth_set.azimuths, fixed_frame(azimuth_set, swapped))
 
 
-def _inertia(each: AzimuthSet, matrices: Array) -> tuple[str, float, list[str]] | None:
+def _inertia(azimuth_set: AzimuthSet, matrices: Array) -> tuple[str, float, list[str]] | None:
     """A degree of freedom whose inertia differs between azimuths: its label, the ratio of its equation, and the files.
 
     A change of one diagonal entry of M multiplies the acceleration row of its motion by a factor and adds multiples of that
     row to all others.
     """
-    reference = _typical(each.azimuths, matrices)
+    reference = _typical(azimuth_set.azimuths, matrices)
     difference = matrices - reference
-    difference[np.abs(difference) < ROUNDING_FACTOR * _noise(each)] = 0.0
+    difference[np.abs(difference) < ROUNDING_FACTOR * _noise(azimuth_set)] = 0.0
     total = float(np.linalg.norm(difference))
     best: tuple[float, int, Array] | None = None
-    for q, v in each.pairs:
+    for q, v in azimuth_set.pairs:
         row = reference[:, v]
         size = np.einsum("kj,kj->k", row, row)
-        if each.states[q].blade or not size.all():
+        if azimuth_set.states[q].blade or not size.all():
             continue
         factor = np.einsum("kij,kj->ki", difference, row) / size[:, None]
         remaining = float(np.linalg.norm(difference - factor[:, :, None] * row[:, None, :]))
@@ -138,25 +138,31 @@ def _inertia(each: AzimuthSet, matrices: Array) -> tuple[str, float, list[str]] 
     _, q, ratio = best
     changed = np.abs(ratio - 1) > MIN_DRIFT
     worst = float(ratio[np.abs(ratio - 1).argmax()])
-    return each.states[q].label, worst, [f.path.name for f, c in zip(each.files, changed, strict=True) if c]
+    return (
+        azimuth_set.states[q].label,
+        worst,
+        [f.path.name for f, c in zip(azimuth_set.files, changed, strict=True) if c],
+    )
 
 
 def _typical(azimuths: Array, matrices: Array) -> Array:
     """For each azimuth the median of the matrices at its phase of blade passing, if there are three, else of all."""
-    distance = np.abs(np.angle(np.exp(3j * (azimuths[:, None] - azimuths))))
-    everything = np.median(matrices, axis=0)
+    distances = np.abs(np.angle(np.exp(3j * (azimuths[:, None] - azimuths))))
+    overall = np.median(matrices, axis=0)
     return np.array(
         [
-            np.median(matrices[same], axis=0) if np.count_nonzero(same := near < SAME_PHASE / 2) > 2 else everything
-            for near in distance
+            np.median(matrices[at_phase], axis=0)
+            if np.count_nonzero(at_phase := distance < SAME_PHASE / 2) > 2
+            else overall
+            for distance in distances
         ]
     )
 
 
-def _noise(each: AzimuthSet) -> Array:
+def _noise(azimuth_set: AzimuthSet) -> Array:
     """Largest errors of the matrices in the fixed frame by the printed digits (azimuth, row, column)."""
-    out = np.empty_like(each.half)
-    for k, file in enumerate(each.files):
-        P, inverse = states_of_components(each, file.azimuth, file.rotor_speed)
-        out[k] = np.abs(inverse) @ each.half[k] @ np.abs(P)
+    out = np.empty_like(azimuth_set.half_unit)
+    for k, file in enumerate(azimuth_set.files):
+        P, inverse = states_of_components(azimuth_set, file.azimuth, file.rotor_speed)
+        out[k] = np.abs(inverse) @ azimuth_set.half_unit[k] @ np.abs(P)
     return out

@@ -57,8 +57,8 @@ class Cause:
         return self.chance <= CHANCE and self.explained >= 1.0 - limit**2
 
     def __str__(self) -> str:
-        what = f"{self.factor:.4g} × {self.name}" if self.fitted else self.name
-        return f"{what} (explains {100 * self.explained:.3g} %, leaves {100 * self.remains:.2g} %)"
+        alteration = f"{self.factor:.4g} × {self.name}" if self.fitted else self.name
+        return f"{alteration} (explains {100 * self.explained:.3g} %, leaves {100 * self.remains:.2g} %)"
 
 
 def ranked(deck: Deck, difference: Array, uncertainty: float, predict: Callable[[Deck], Array]) -> tuple[Cause, ...]:
@@ -72,25 +72,25 @@ def ranked(deck: Deck, difference: Array, uncertainty: float, predict: Callable[
     """
     base = predict(deck)
     out: list[Cause] = []
-    fixed = [each for each in HYPOTHESES if not each.fitted]
-    factors = [each for each in HYPOTHESES if each.fitted]
-    for each in fixed:
-        change = predict(each.alter(deck, 1.0)) - base
+    fixed = [azimuth_set for azimuth_set in HYPOTHESES if not azimuth_set.fitted]
+    factors = [azimuth_set for azimuth_set in HYPOTHESES if azimuth_set.fitted]
+    for azimuth_set in fixed:
+        change = predict(azimuth_set.alter(deck, 1.0)) - base
         if _visible(change, uncertainty):
-            out.append(_cause(each, 1.0, difference, change, uncertainty, len(fixed)))
-    slopes = {each: (predict(each.alter(deck, STEP)) - base) / np.log(STEP) for each in factors}
-    slopes = {each: slope for each, slope in slopes.items() if _visible(0.1 * slope, uncertainty)}
-    remainders = {each: _remainder(difference, slope) for each, slope in slopes.items()}
-    for each in sorted(slopes, key=remainders.__getitem__)[:FITTED]:
-        slope = slopes[each]
+            out.append(_cause(azimuth_set, 1.0, difference, change, uncertainty, len(fixed)))
+    slopes = {azimuth_set: (predict(azimuth_set.alter(deck, STEP)) - base) / np.log(STEP) for azimuth_set in factors}
+    slopes = {azimuth_set: slope for azimuth_set, slope in slopes.items() if _visible(0.1 * slope, uncertainty)}
+    remainders = {azimuth_set: _remainder(difference, slope) for azimuth_set, slope in slopes.items()}
+    for azimuth_set in sorted(slopes, key=remainders.__getitem__)[:FITTED]:
+        slope = slopes[azimuth_set]
         power = float(difference @ slope / (slope @ slope))
         for _ in range(REFINED):  # the secant through the last factor
             if not 1e-6 < abs(power) < np.log(10.0):
                 break
-            change = predict(each.alter(deck, float(np.exp(power)))) - base
+            change = predict(azimuth_set.alter(deck, float(np.exp(power)))) - base
             if not _visible(change, 0.0):
                 break
-            out.append(_cause(each, float(np.exp(power)), difference, change, uncertainty, len(factors)))
+            out.append(_cause(azimuth_set, float(np.exp(power)), difference, change, uncertainty, len(factors)))
             slope = change / power
             power = float(difference @ slope / (slope @ slope))
     best: dict[str, Cause] = {}
@@ -108,16 +108,16 @@ def _visible(change: Array, uncertainty: float) -> bool:
     return bool(np.isfinite(change).all() and np.abs(change).max(initial=0.0) > max(VISIBLE * uncertainty, 1e-9))
 
 
-def _cause(each: Hypothesis, factor: float, D: Array, change: Array, uncertainty: float, kinds: int) -> Cause:
-    rest, size = D - change, float(D @ D)
-    share = float(max(rest @ rest, len(D) * uncertainty**2)) / size
+def _cause(azimuth_set: Hypothesis, factor: float, D: Array, change: Array, uncertainty: float, kinds: int) -> Cause:
+    remainder, size = D - change, float(D @ D)
+    share = float(max(remainder @ remainder, len(D) * uncertainty**2)) / size
     return Cause(
-        each.name,
+        azimuth_set.name,
         factor,
-        1.0 - float(rest @ rest) / size,
-        float(np.abs(rest).max()),
-        chance(share, len(D), kinds, 1 if each.fitted else 0),
-        each.fitted,
+        1.0 - float(remainder @ remainder) / size,
+        float(np.abs(remainder).max()),
+        chance(share, len(D), kinds, 1 if azimuth_set.fitted else 0),
+        azimuth_set.fitted,
     )
 
 

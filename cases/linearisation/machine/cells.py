@@ -25,7 +25,7 @@ from ..judged import JudgedSet
 from ..modes import Mode
 from . import deck as decks
 from .deck import Deck
-from .split import DEFLECTION, GRAVITY, NODES, SHAPES, Beside, compare
+from .split import DEFLECTION, GRAVITY, NODES, SHAPES, ModeComparison, compare
 from .stations import motions
 
 SAME_PITCH = 1e-6
@@ -53,47 +53,47 @@ def rows(
         return [empty(head, omega, "not applicable", str(error)) for omega, _ in core], []
     out: list[Cell] = []
     if abs(deck.pitch - pitch) > SAME_PITCH:
-        given = f"{np.degrees(deck.pitch):.4g}° in the deck (BlPitch), {np.degrees(pitch):.4g}° here"
-        reason = f"the blades are pitched by {given}: give --pitch={np.degrees(deck.pitch):.4g}"
+        pitches = f"{np.degrees(deck.pitch):.4g}° in the deck (BlPitch), {np.degrees(pitch):.4g}° here"
+        reason = f"the blades are pitched by {pitches}: give --pitch={np.degrees(deck.pitch):.4g}"
         return [empty(head, omega, "not applicable", reason) for omega, _ in core], []
     for omega, reference in core:
-        near = [judged for judged in sets if at(judged, omega)]
-        for judged in near:
+        at_speed = [judged_set for judged_set in sets if at(judged_set, omega)]
+        for judged_set in at_speed:
             try:
-                out += _cells(head, omega, deck, judged, reference)
+                out += _cells(head, omega, deck, judged_set, reference)
             except CaseError as error:
                 out.append(empty(head, omega, "not applicable", str(error)))
     return out, []
 
 
-def at(judged: JudgedSet, omega: float) -> bool:
+def at(judged_set: JudgedSet, omega: float) -> bool:
     """Whether a set has this rotor speed, rad/s, within the digits of its files."""
-    slack = max(file.unit for file in judged.each.files) + 1e-9 * abs(omega)
-    return abs(judged.each.omega - omega) <= slack
+    slack = max(file.unit for file in judged_set.azimuth_set.files) + 1e-9 * abs(omega)
+    return abs(judged_set.azimuth_set.omega - omega) <= slack
 
 
-def _cells(head: Head, omega: float, deck: Deck, judged: JudgedSet, reference: Reference) -> list[Cell]:
-    each = judged.each
-    lacking = {"tower fore-aft 1", "tower side-side 1"} - {state.family for state in each.states}
-    if lacking:
-        reason = f"{each.name} has no states of {', '.join(sorted(lacking))}: judge it alone, with --fst"
+def _cells(head: Head, omega: float, deck: Deck, judged_set: JudgedSet, reference: Reference) -> list[Cell]:
+    azimuth_set = judged_set.azimuth_set
+    absent_families = {"tower fore-aft 1", "tower side-side 1"} - {state.family for state in azimuth_set.states}
+    if absent_families:
+        reason = f"{azimuth_set.name} has no states of {', '.join(sorted(absent_families))}: judge it alone, with --fst"
         return [empty(head, omega, "not applicable", reason)]
-    besides = {id(beside.mode): beside for beside in compare(judged, deck, causes=False).modes}
-    modes = tuple(mode for mode in judged.modes if id(mode) in besides)
+    by_mode = {id(comparison.mode): comparison for comparison in compare(judged_set, deck, causes=False).modes}
+    modes = tuple(mode for mode in judged_set.modes if id(mode) in by_mode)
     spectrum = Spectrum(
-        np.array([mode.eigenvalue for mode in modes]), motions(deck, each, modes), COLUMNS, weights(deck.turbine)
+        np.array([mode.eigenvalue for mode in modes]), motions(deck, azimuth_set, modes), COLUMNS, weights(deck.turbine)
     )
-    defects = [finding.name for finding in judged.findings if finding.level == DEFECT]
+    defects = [finding.name for finding in judged_set.findings if finding.level == DEFECT]
     out = []
     for i, partner in enumerate(pair(reference.core.spectrum, spectrum, reference.core.indices)):
         if partner.mode is None:
             cell = replace(empty(head, omega, "not applicable", ""), **mode_fields(reference, i))
-            out.append(replace(cell, reason=f"{each.name} has no mode of this shape"))
+            out.append(replace(cell, reason=f"{azimuth_set.name} has no mode of this shape"))
             continue
         mode = modes[partner.mode]
         cell = printed(head, omega, i, reference, _estimate(mode), "")
         cell = replace(cell, mac=partner.mac)
-        out.append(_unless_defective(_known(cell, besides[id(mode)]), defects))
+        out.append(_unless_defective(_known(cell, by_mode[id(mode)]), defects))
     return out
 
 
@@ -102,11 +102,11 @@ def _estimate(mode: Mode) -> Estimate:
     return Estimate(abs(mode.eigenvalue), float(digits) if np.isfinite(digits) and digits < 1.0 else None)
 
 
-def _known(cell: Cell, beside: Beside) -> Cell:
+def _known(cell: Cell, pair: ModeComparison) -> Cell:
     """The cell, with the parts of its difference; known if what is left of it is within the target."""
     if cell.verdict in AGREES or cell.difference is None:
         return cell
-    parts = {name: value for name, value in beside.parts.items() if name in KNOWN and abs(value) > 1e-5}
+    parts = {name: value for name, value in pair.parts.items() if name in KNOWN and abs(value) > 1e-5}
     remainder = cell.difference - sum(parts.values())
     listed = ", ".join(f"{name} {100 * value:+.3g} %" for name, value in parts.items())
     reason = f"{listed}; {100 * remainder:+.3g} % {'left' if parts else 'without them'}".replace("-", "−")

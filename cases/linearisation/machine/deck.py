@@ -51,23 +51,23 @@ def read(path: Path) -> Deck:
         if not fst.matches_format(primary):
             raise CaseError(f"--fst {path}: not a primary file of OpenFAST (no EDFile): give the turbine's .fst file")
         main = load(fst.file_named(primary, "EDFile"))
-        named = keys(main)
+        entries = keys(main)
         if not elastodyn_tower.tower_file(main).is_file():
             raise CaseError(
                 f"--fst {path}: {elastodyn_tower.tower_file(main)}: no such file: put the tower's file there"
             )
-        pitch = -np.radians(value(main, named, "BlPitch1")) if "blpitch1" in named else 0.0
-        made = reader.read(path, Mount(pitch=pitch))
+        pitch = -np.radians(value(main, entries, "BlPitch1")) if "blpitch1" in entries else 0.0
+        reading = reader.read(path, Mount(pitch=pitch))
         blade = elastodyn.blade_file(main)
         compelast = keys(primary).get("compelast", (0, "1"))[1]
         return Deck(
-            made.turbine,
-            float(np.radians(value(main, named, "ShftTilt"))),
+            reading.turbine,
+            float(np.radians(value(main, entries, "ShftTilt"))),
             mode_shapes.of_blade(load(blade)) if compelast == "1" else {},
             mode_shapes.of_tower(load(elastodyn_tower.tower_file(main))),
-            whole(main, named, "BldNodes") if "bldnodes" in named else 0,
-            whole(main, named, "TwrNodes") if "twrnodes" in named else 0,
-            value(main, named, "DTTorSpr"),
+            whole(main, entries, "BldNodes") if "bldnodes" in entries else 0,
+            whole(main, entries, "TwrNodes") if "twrnodes" in entries else 0,
+            value(main, entries, "DTTorSpr"),
             mode_shapes.number_or(main, "DTTorDmp", 0.0),
             float(pitch),
         )

@@ -41,25 +41,25 @@ class Structure:
     families: tuple[str, ...]
     blades: int
 
-    def state_matrix(self, matrices: Matrices, each: AzimuthSet) -> Array:
+    def state_matrix(self, matrices: Matrices, azimuth_set: AzimuthSet) -> Array:
         """A (s, s) with these equations; other states do not move."""
         M, C, K = matrices
-        out = np.zeros((len(each.states), len(each.states)))
+        out = np.zeros((len(azimuth_set.states), len(azimuth_set.states)))
         out[self.coordinates, self.rates] = 1.0
         out[np.ix_(self.rates, self.coordinates)] = -np.linalg.solve(M, K)
         out[np.ix_(self.rates, self.rates)] = -np.linalg.solve(M, C)
         return out
 
 
-def structure(deck: Deck, tower: Tower, each: AzimuthSet) -> Structure:
+def structure(deck: Deck, tower: Tower, azimuth_set: AzimuthSet) -> Structure:
     """The equations of a deck in the states of a set, all of which are ElastoDyn's and in the deck."""
-    rate_of = dict(each.pairs)
-    at = {(state.family, state.blade): k for k, state in enumerate(each.states) if k in rate_of}
+    rate_of = dict(azimuth_set.pairs)
+    at = {(state.family, state.blade): k for k, state in enumerate(azimuth_set.states) if k in rate_of}
     families = tuple(name for name in (*tower.names, "generator", "drivetrain") if (name, None) in at)
     motions = [name for name in deck.blade_shapes if (name, 1) in at]
     shapes = {name: deck.blade_shapes[name] for name in motions}
     places = [at[name, None] for name in families]
-    places += [at[name, blade] for blade in range(1, each.blades + 1) for name in motions]
+    places += [at[name, blade] for blade in range(1, azimuth_set.blades + 1) for name in motions]
     return Structure(
         deck,
         nodes_of(deck.turbine.blade, shapes, deck.blade_nodes),
@@ -67,7 +67,7 @@ def structure(deck: Deck, tower: Tower, each: AzimuthSet) -> Structure:
         np.array(places, dtype=np.intp),
         np.array([rate_of[k] for k in places], dtype=np.intp),
         families,
-        each.blades,
+        azimuth_set.blades,
     )
 
 
@@ -122,11 +122,11 @@ def _rotor(model: Structure, psi: float, omega: float, weight: Array, at: tuple[
         turns = turned_axes(angle)
         M, C, K = blade_equations(model.nodes, model.deck.turbine.blade, omega, turns[0][:3, :3] @ weight, point)
         P = []
-        for order, turn in enumerate(turns):
+        for order, derivative in enumerate(turns):
             part = np.zeros((r + 6, size))
             if not order:
                 part[:r, k * r : (k + 1) * r] = np.eye(r)
-            part[r:, -6:] = turn
+            part[r:, -6:] = derivative
             P.append(part)
         out[0] += P[0].T @ M @ P[0]
         out[1] += P[0].T @ (C @ P[0] + 2.0 * omega * M @ P[1])

@@ -67,12 +67,12 @@ def points(deck: Deck) -> Points:
     return Points(*out)
 
 
-def of_states(deck: Deck, at: Points, each: AzimuthSet) -> Array:
+def of_states(deck: Deck, at: Points, azimuth_set: AzimuthSet) -> Array:
     """(s, f) field of each state of a set in the fixed frame; zero of rates and of states without a displacement here."""
-    rate_of = dict(each.pairs)
-    out = np.zeros((len(each.states), at.size))
-    component = {k: n for group in each.groups for n, k in enumerate(group.members)}
-    for k, state in enumerate(each.states):
+    rate_of = dict(azimuth_set.pairs)
+    out = np.zeros((len(azimuth_set.states), at.size))
+    component = {k: n for group in azimuth_set.groups for n, k in enumerate(group.members)}
+    for k, state in enumerate(azimuth_set.states):
         if k in rate_of:
             _add(deck, at, state, component.get(k, 0), out[k])
     return out
@@ -82,27 +82,27 @@ def _add(deck: Deck, at: Points, state: State, component: int, row: Array) -> No
     t, b = len(at.tower), len(at.blade)
     if state.family in deck.tower_shapes:
         shape = {state.family: deck.tower_shapes[state.family]}
-        moved, _ = field_of(deck.turbine.tower, shape)(at.tower)
-        row[: 2 * t] = (moved[0, :, 1:] * at.tower_weight[:, None]).ravel()
+        displacements, _ = field_of(deck.turbine.tower, shape)(at.tower)
+        row[: 2 * t] = (displacements[0, :, 1:] * at.tower_weight[:, None]).ravel()
     elif state.family in ("generator", "drivetrain", "yaw"):
         row[2 * t] = _shaft_weight(deck) if state.family != "yaw" else 0.0
     elif state.blade and state.module == "ED" and state.family in deck.blade_shapes:
         shape = {state.family: deck.blade_shapes[state.family]}
-        moved, _ = field_of(deck.turbine.blade, shape)(at.blade)
-        _blade(row, t, b, component, moved[0, :, 1:] * at.blade_weight[:, None])
+        displacements, _ = field_of(deck.turbine.blade, shape)(at.blade)
+        _blade(row, t, b, component, displacements[0, :, 1:] * at.blade_weight[:, None])
     elif state.blade and (node := state.direction) and node[0] == "translational" and node[1] < 2:
         hats = lagrange(deck.turbine.blade.length, state.element_order, at.blade)
         if 2 <= node[2] <= len(hats):
             hat = hats[node[2] - 1] * at.blade_weight
             # BeamDyn: x downwind, y to the trailing edge, against y here
-            moved = np.stack([0.0 * hat, hat] if node[1] == 0 else [-hat, 0.0 * hat], axis=-1)
-            _blade(row, t, b, component, moved)
+            displacements = np.stack([0.0 * hat, hat] if node[1] == 0 else [-hat, 0.0 * hat], axis=-1)
+            _blade(row, t, b, component, displacements)
 
 
-def _blade(row: Array, t: int, b: int, component: int, moved: Array) -> None:
+def _blade(row: Array, t: int, b: int, component: int, displacements: Array) -> None:
     weight = 1.0 if component == 0 else np.sqrt(0.5)
     start = 2 * t + 1 + component * 2 * b
-    row[start : start + 2 * b] += weight * moved.ravel()
+    row[start : start + 2 * b] += weight * displacements.ravel()
 
 
 def _shaft_weight(deck: Deck) -> float:
@@ -131,9 +131,9 @@ def element(length: float, order: int) -> Field:
 
     def at(s: Array) -> tuple[Array, Array]:
         rows = lagrange(length, order, s)[1:]
-        moved = np.einsum("kn,ab->kanb", rows, np.eye(3)).reshape(-1, len(s), 3)
-        still = np.zeros_like(moved)
-        return np.concatenate([moved, still]), np.concatenate([still, moved])
+        displacements = np.einsum("kn,ab->kanb", rows, np.eye(3)).reshape(-1, len(s), 3)
+        zeros = np.zeros_like(displacements)
+        return np.concatenate([displacements, zeros]), np.concatenate([zeros, displacements])
 
     return at
 
@@ -143,13 +143,13 @@ def of_core(deck: Deck, at: Points, a: Assembled) -> Array:
     t, b = len(at.tower), len(at.blade)
     out = np.zeros((len(a.M), at.size))
     if a.tower.size:
-        moved = _along(a.meshes[0], a.tower_links, a.tower.vectors, deck.turbine.tower, at.tower)
-        out[: a.tower.size, : 2 * t] = (moved * at.tower_weight[:, None]).reshape(a.tower.size, -1)
+        displacements = _along(a.meshes[0], a.tower_links, a.tower.vectors, deck.turbine.tower, at.tower)
+        out[: a.tower.size, : 2 * t] = (displacements * at.tower_weight[:, None]).reshape(a.tower.size, -1)
     if a.shaft:
         out[a.shaft[0], 2 * t] = _shaft_weight(deck)
-    moved = of_blade(deck, at, a.meshes[1], a.blade_links, a.blade.vectors)
+    displacements = of_blade(deck, at, a.meshes[1], a.blade_links, a.blade.vectors)
     for component, rows in enumerate(a.blades):
-        for row, shape in zip(rows, moved, strict=True):
+        for row, shape in zip(rows, displacements, strict=True):
             _blade(out[row], t, b, component, shape)
     return out
 
@@ -164,11 +164,13 @@ def _along(mesh: Mesh, links: Links, vectors: Array, beam: Blade, s: Array) -> A
     base = mesh.nodes[0, :3, :3] @ sp.rotation(0, np.array(float(beam.twist[0]))).T
     places = ((mesh.nodes[:, :3, 3] - mesh.nodes[0, :3, 3]) @ base)[:, 0]
     local = twists(links, vectors)[..., :3]
-    moved = np.concatenate(
+    displacements = np.concatenate(
         [np.zeros((len(local), 1, 3)), np.einsum("ia,nij,knj->kna", base, mesh.nodes[1:, :3, :3], local)], axis=1
     )
     order = np.argsort(places, kind="stable")
-    return np.array([[np.interp(s, places[order], row[order, j]) for j in (1, 2)] for row in moved]).swapaxes(1, 2)
+    return np.array([[np.interp(s, places[order], row[order, j]) for j in (1, 2)] for row in displacements]).swapaxes(
+        1, 2
+    )
 
 
 def paired(first: Shapes, second: Shapes) -> tuple[NDArray[np.intp], Array]:

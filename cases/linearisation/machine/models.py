@@ -56,35 +56,35 @@ class Degrees:
     order: int | None = None
 
 
-def degrees(deck: Deck, each: AzimuthSet) -> Degrees:
+def degrees(deck: Deck, azimuth_set: AzimuthSet) -> Degrees:
     """The degrees of freedom of a set.
 
     Raises:
         CaseError: the set moves in a way that the machine does not, or has another number of blades.
     """
-    rate_of = dict(each.pairs)
-    moving = [state for k, state in enumerate(each.states) if k in rate_of]
+    rate_of = dict(azimuth_set.pairs)
+    moving = [state for k, state in enumerate(azimuth_set.states) if k in rate_of]
     names = {state.family for state in moving if not state.blade}
-    other = sorted(names - {*deck.tower_shapes, *HUB})
-    if other:
+    unsupported = sorted(names - {*deck.tower_shapes, *HUB})
+    if unsupported:
         raise CaseError(
-            f"--fst: {each.name}: state {other[0]!r}: Southwell's turbine stands on rigid ground and has no such motion: leave "
-            "out --fst"
+            f"--fst: {azimuth_set.name}: state {unsupported[0]!r}: Southwell's turbine stands on rigid ground and has no such "
+            "motion: leave out --fst"
         )
-    if each.blades != deck.turbine.blades or each.blades == 2:
+    if azimuth_set.blades != deck.turbine.blades or azimuth_set.blades == 2:
         raise CaseError(
-            f"--fst: {each.name}: {each.blades} blades with states, {deck.turbine.blades} in the deck: give the deck of this "
-            "linearisation, with one blade or three"
+            f"--fst: {azimuth_set.name}: {azimuth_set.blades} blades with states, {deck.turbine.blades} in the deck: give the "
+            "deck of this linearisation, with one blade or three"
         )
-    if each.blades == 1 and names:
+    if azimuth_set.blades == 1 and names:
         raise CaseError(
-            f"--fst: {each.name}: one blade on a hub that moves is not constant in any frame: leave out --fst"
+            f"--fst: {azimuth_set.name}: one blade on a hub that moves is not constant in any frame: leave out --fst"
         )
     flexible = {state.family for state in moving if state.blade and state.module == "ED"}
     missing = sorted(flexible - set(deck.blade_shapes))
     if missing:
         raise CaseError(
-            f"--fst: {each.name}: state {missing[0]!r}: the deck's blades have no such shape: give its own deck"
+            f"--fst: {azimuth_set.name}: state {missing[0]!r}: the deck's blades have no such shape: give its own deck"
         )
     return Degrees(
         {name: shape for name, shape in deck.blade_shapes.items() if name in flexible},
@@ -99,21 +99,21 @@ class Models:
     """A deck as a set needs it.
 
     Attributes:
-        deck, each: the deck and the set.
+        deck, azimuth_set: the deck and the set.
         free: its degrees of freedom.
         at: points at which shapes are compared.
     """
 
     deck: Deck
-    each: AzimuthSet
+    azimuth_set: AzimuthSet
     free: Degrees
     at: Points
 
     def core(self, restricted: bool) -> Shapes:
         """Modes of core's machine, free or restricted to the assumed shapes."""
-        if self.each.blades == 1:
+        if self.azimuth_set.blades == 1:
             return _single(self, self.blade_field() if restricted else None)
-        a = assemble(self.machine(restricted), self.each.omega)
+        a = assemble(self.machine(restricted), self.azimuth_set.omega)
         rigid = np.zeros((len(a.M), 0))
         if "generator" in self.free.hub:
             rigid = np.zeros((len(a.M), 1))
@@ -137,12 +137,12 @@ class Models:
 
     def structure(self) -> Structure:
         """ElastoDyn's equations."""
-        made = self.machine(True) if self.each.blades > 1 else None
-        part = tower(self.deck, made, self.free.tower, "yaw" in self.free.hub)
-        return elastodyn.structure(self.deck, part, self.each)
+        turbine = self.machine(True) if self.azimuth_set.blades > 1 else None
+        part = tower(self.deck, turbine, self.free.tower, "yaw" in self.free.hub)
+        return elastodyn.structure(self.deck, part, self.azimuth_set)
 
 
-def matrices(model: Structure, each: AzimuthSet, gravity: bool, deflected: bool) -> list[Matrices]:
+def matrices(model: Structure, azimuth_set: AzimuthSet, gravity: bool, deflected: bool) -> list[Matrices]:
     """ElastoDyn's M, C, K at each azimuth, with or without gravity on the blades and at its operating point."""
     out: list[Matrices] = []
     r = len(model.nodes.stiffness)
@@ -150,28 +150,30 @@ def matrices(model: Structure, each: AzimuthSet, gravity: bool, deflected: bool)
         index[len(model.families) :].reshape(model.blades, r) for index in (model.coordinates, model.rates)
     )
     factor = 1.0 if deflected else 0.0
-    for k, file in enumerate(each.files):
+    for k, file in enumerate(azimuth_set.files):
         at = tuple(
             OperatingPoint(
-                factor * each.values[k][q],
-                factor * each.values[k][v],
-                factor * np.nan_to_num(each.accelerations[k][v]),
+                factor * azimuth_set.values[k][q],
+                factor * azimuth_set.values[k][v],
+                factor * np.nan_to_num(azimuth_set.accelerations[k][v]),
             )
             for q, v in zip(blade_states, blade_rates, strict=True)
         )
         weight = model.deck.turbine.gravity if gravity else 0.0
-        out.append(equations(model, float(each.azimuths[k]), file.rotor_speed, weight, at))
+        out.append(equations(model, float(azimuth_set.azimuths[k]), file.rotor_speed, weight, at))
     return out
 
 
 def of_states(models: Models, A: Array) -> Shapes:
     """Modes of state matrices (azimuth, s, s) in the states of the set, of their mean in the fixed frame."""
-    mean = fixed_frame(models.each, A).mean(axis=0)
+    mean = fixed_frame(models.azimuth_set, A).mean(axis=0)
     values, vectors = cast("tuple[Complex, Complex]", np.linalg.eig(mean.astype(np.complex128)))
-    keep = np.flatnonzero(values.imag > MIN_OSCILLATION)
-    keep = keep[np.argsort(np.abs(values[keep]), kind="stable")]
-    shapes: Complex = vectors[:, keep].T @ fields.of_states(models.deck, models.at, models.each).astype(np.complex128)
-    return Shapes(values[keep], shapes)
+    kept_indices = np.flatnonzero(values.imag > MIN_OSCILLATION)
+    kept_indices = kept_indices[np.argsort(np.abs(values[kept_indices]), kind="stable")]
+    shapes: Complex = vectors[:, kept_indices].T @ fields.of_states(models.deck, models.at, models.azimuth_set).astype(
+        np.complex128
+    )
+    return Shapes(values[kept_indices], shapes)
 
 
 def _single(models: Models, restricted: Field | None) -> Shapes:
@@ -179,20 +181,20 @@ def _single(models: Models, restricted: Field | None) -> Shapes:
     blade = models.deck.turbine.blade
     with one_thread():
         mesh = discretize(blade, Resolution().blade_elements)
-        state = balance(mesh, models.each.omega, np.zeros(3), ALL_EFFECTS)
+        state = balance(mesh, models.azimuth_set.omega, np.zeros(3), ALL_EFFECTS)
         if restricted is None:
             part = component.reduced_component(mesh, state, Resolution().blade_modes)
         else:
             part = component.restricted(mesh, state, restricted_motions(blade, mesh, restricted))
         r = part.size
         pairs = eigen.damped(part.M[:r, :r], part.C[:r, :r], part.K[:r, :r])
-    moved = fields.of_blade(models.deck, models.at, mesh, state.pencil.links, part.vectors)
+    displacements = fields.of_blade(models.deck, models.at, mesh, state.pencil.links, part.vectors)
     field = np.zeros((r, models.at.size))
     start = 2 * len(models.at.tower) + 1
-    field[:, start : start + 2 * len(models.at.blade)] = moved.reshape(r, -1)
+    field[:, start : start + 2 * len(models.at.blade)] = displacements.reshape(r, -1)
     return _shapes(pairs.values, pairs.vectors.T @ field)
 
 
 def _shapes(values: Complex, shapes: Complex) -> Shapes:
-    keep = np.flatnonzero((values.imag > 0) & (np.abs(shapes) ** 2).sum(1).astype(bool))
-    return Shapes(values[keep], shapes[keep])
+    kept_indices = np.flatnonzero((values.imag > 0) & (np.abs(shapes) ** 2).sum(1).astype(bool))
+    return Shapes(values[kept_indices], shapes[kept_indices])

@@ -19,17 +19,17 @@ Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
 
 
-def motions(deck: Deck, each: AzimuthSet, modes: tuple[Mode, ...]) -> Complex:
+def motions(deck: Deck, azimuth_set: AzimuthSet, modes: tuple[Mode, ...]) -> Complex:
     """(m, 21 (1 + N), 4) displacement and rotation about x of tower and blades in modes, which are in the fixed frame."""
-    P, _ = states_of_components(each, 0.0, each.omega)
-    return np.einsum("kzc,mk->mzc", of_states(deck, each), np.array([P @ mode.shape for mode in modes]))
+    P, _ = states_of_components(azimuth_set, 0.0, azimuth_set.omega)
+    return np.einsum("kzc,mk->mzc", of_states(deck, azimuth_set), np.array([P @ mode.shape for mode in modes]))
 
 
-def of_states(deck: Deck, each: AzimuthSet) -> Array:
+def of_states(deck: Deck, azimuth_set: AzimuthSet) -> Array:
     """(s, 21 (1 + N), 4) motions by a unit of each state at azimuth 0; none of rates and of other states."""
-    rate_of, n = dict(each.pairs), len(STATIONS)
-    out = np.zeros((len(each.states), n * (1 + deck.turbine.blades), 4))
-    for k, state in enumerate(each.states):
+    rate_of, n = dict(azimuth_set.pairs), len(STATIONS)
+    out = np.zeros((len(azimuth_set.states), n * (1 + deck.turbine.blades), 4))
+    for k, state in enumerate(azimuth_set.states):
         if k not in rate_of:
             continue
         if state.blade:
@@ -68,13 +68,15 @@ def _bent(deck: Deck, state: State) -> Array:
 
 def _carried(deck: Deck, state: State) -> tuple[Array, Array]:
     """(21, 3) displacements of the tower, and the twist (6,) of the hub that does not turn."""
-    tower, none = deck.turbine.tower, np.zeros((len(STATIONS), 3))
+    tower, blade_motion = deck.turbine.tower, np.zeros((len(STATIONS), 3))
     if state.family in ("generator", "drivetrain"):
-        return none, RZ
+        return blade_motion, RZ
     top = np.zeros(6)
     if state.family == "yaw":
         top[3] = 1.0
     elif state.family in deck.tower_shapes:
-        moved, turned = field_of(tower, {state.family: deck.tower_shapes[state.family]})(STATIONS * tower.length)
-        none, top = moved[0], np.concatenate([moved[0, -1], turned[0, -1]])
-    return none, sp.adjoint(sp.inverse(deck.turbine.shaft)) @ top
+        displacements, rotations = field_of(tower, {state.family: deck.tower_shapes[state.family]})(
+            STATIONS * tower.length
+        )
+        blade_motion, top = displacements[0], np.concatenate([displacements[0, -1], rotations[0, -1]])
+    return blade_motion, sp.adjoint(sp.inverse(deck.turbine.shaft)) @ top

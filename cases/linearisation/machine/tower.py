@@ -33,20 +33,20 @@ class Tower:
     tip: Array
 
 
-def tower(deck: Deck, made: Machine | None, shapes: dict[str, Shape], yaw: bool) -> Tower:
+def tower(deck: Deck, turbine: Machine | None, shapes: dict[str, Shape], yaw: bool) -> Tower:
     """The tower of a machine that is restricted to these shapes, in their own coordinates, as ElastoDyn's nodes integrate it.
 
     Without a machine, or any motion, it is rigid.
     """
     names = (*shapes, *(("yaw",) if yaw else ()))
-    if made is None or not names:
+    if turbine is None or not names:
         return Tower((), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((0, 0)), np.zeros((6, 0)))
-    part, beam = made.tower, made.turbine.tower
-    rates = restricted_motions(beam, made.tower_mesh, field_of(beam, shapes))
-    motions = with_strains(made.tower_mesh, made.tower_state, rates)
+    part, beam = turbine.tower, turbine.turbine.tower
+    rates = restricted_motions(beam, turbine.tower_mesh, field_of(beam, shapes))
+    motions = with_strains(turbine.tower_mesh, turbine.tower_state, rates)
     U = np.linalg.lstsq(motions.T, part.vectors.T, rcond=None)[0]  # own coordinates are U times core's
-    back = np.linalg.inv(U)
-    M, C, K = (back.T @ each @ back for each in (part.M, part.C, part.K))
+    inverse = np.linalg.inv(U)
+    M, C, K = (inverse.T @ azimuth_set @ inverse for azimuth_set in (part.M, part.C, part.K))
     n = len(shapes)
     exact, coarse = (_integrals(deck, shapes, count) for count in (FINE, deck.tower_nodes or FINE))
     tuner = np.sqrt([shape.tuner for shape in shapes.values()])
@@ -54,7 +54,7 @@ def tower(deck: Deck, made: Machine | None, shapes: dict[str, Shape], yaw: bool)
     K[:n, :n] += coarse[1] * np.outer(tuner, tuner) - exact[1]
     C = C.copy()
     C[:n, :n] += coarse[2]
-    return Tower(names, M, C, K, part.tip @ back)
+    return Tower(names, M, C, K, part.tip @ inverse)
 
 
 def _integrals(deck: Deck, shapes: dict[str, Shape], count: int) -> tuple[Array, Array, Array]:
@@ -65,11 +65,11 @@ def _integrals(deck: Deck, shapes: dict[str, Shape], count: int) -> tuple[Array,
     mass = mass_at(beam, x * beam.length)[:, 0, 0] * step
     section = stiffness_at(beam, x * beam.length)
     plain = np.array([shape.at(x) for shape in shapes.values()]).reshape(-1, count)
-    bent = np.array([shape.at(x, 2) / beam.length**2 for shape in shapes.values()]).reshape(-1, count)
+    curvatures = np.array([shape.at(x, 2) / beam.length**2 for shape in shapes.values()]).reshape(-1, count)
     fore = np.array([name.startswith("tower fore-aft") for name in shapes], dtype=bool)
     M, K = np.zeros((len(shapes), len(shapes))), np.zeros((len(shapes), len(shapes)))
     for family, rigidity in ((fore, section[:, 4, 4]), (~fore, section[:, 5, 5])):
-        for out, values, weight in ((M, plain, mass), (K, bent, rigidity * step)):
+        for out, values, weight in ((M, plain, mass), (K, curvatures, rigidity * step)):
             own = np.where(family[:, None], values, 0.0)
             out += np.einsum("in,kn,n->ik", own, own, weight)
     ratio = np.array([2.0 * shape.damping for shape in shapes.values()])

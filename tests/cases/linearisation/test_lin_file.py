@@ -29,8 +29,8 @@ def test_what_is_written_is_read() -> None:
     lin = lin_file()
     assert (lin.version, lin.azimuth, lin.rotor_speed, lin.digits) == ("v3.5.3", 0.3, 1.0, 4)
     assert "BeamDyn" in lin.modules
-    assert np.abs(lin.A - LIN.A).max() <= lin.half.max()
-    assert (np.abs(lin.A - LIN.A) <= lin.half + 1e-12 * np.abs(LIN.A)).all()
+    assert np.abs(lin.A - LIN.A).max() <= lin.half_unit.max()
+    assert (np.abs(lin.A - LIN.A) <= lin.half_unit + 1e-12 * np.abs(LIN.A)).all()
     assert len(lin.derivatives) == len(lin.states) == 28
 
 
@@ -122,7 +122,7 @@ def structural_control(stiffness: float = 0.1) -> str:
 def test_idle_directions_of_a_structural_control_are_no_defect() -> None:
     judged = judge_set(azimuth_set("case", [lin_file(structural_control())]))
     assert "kinematic rows" not in {finding.name for finding in judged.findings}
-    assert len(judged.each.pairs) == 16
+    assert len(judged.azimuth_set.pairs) == 16
     control = next(mode for mode in judged.modes if mode.name == "Nacelle StC 1 displacement X")
     assert control.frequency == pytest.approx(np.sqrt(0.1) / (2 * np.pi), rel=1e-9)
     # a row that is zero while its column is not is still a defect

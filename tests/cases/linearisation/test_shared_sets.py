@@ -66,7 +66,7 @@ def test_the_frame_of_beamdyn_is_found() -> None:
     judgement = judged("nrel5mw/5MW_Land_BD_Linear.1.lin")
     assert judgement.verdict == "No"
     assert [finding.name for finding in judgement.findings][:2] == ["frame flag", "truncated digits"]
-    assert "0.3835 Hz as flagged, 0.3907 Hz corrected" in judgement.findings[0].what
+    assert "0.3835 Hz as flagged, 0.3907 Hz corrected" in judgement.findings[0].observation
     assert judgement.findings[0].value == pytest.approx(0.0, abs=1e-3)
 
 

@@ -27,7 +27,7 @@ def test_a_multiple_of_the_rotor_speed_is_no_mode(tmp_path: Path) -> None:
     path.write_text(CSV)
     judgement = judge([path])
     lines = [finding for finding in judgement.findings if finding.name == "order line"]
-    assert [(line.value, line.what.split(" is ")[0]) for line in lines] == [(3.0, "spurious")]
+    assert [(line.value, line.observation.split(" is ")[0]) for line in lines] == [(3.0, "spurious")]
     assert judgement.verdict == "No"
     path.write_text("\n".join(line for line in CSV.splitlines() if "spurious" not in line))
     assert judge([path]).verdict == "Open"
