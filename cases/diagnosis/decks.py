@@ -10,7 +10,7 @@ from ..input import files
 from ..input.readers import BladeFile
 from ..input.readers.hawc2.elements import with_elements
 from ..input.readers.openfast import elastodyn, mode_shapes
-from ..input.readers.text import keys, load, whole
+from ..input.readers.text import integer, keys, load
 from .elastodyn_blade import AssumedShapes
 from .hypotheses import Hypothesis
 from .model import Model
@@ -52,7 +52,7 @@ def _elastodyn(file: BladeFile) -> tuple[Hypothesis, ...]:
     if main is None or of_blade is None or "bldnodes" not in keys(main):
         return ()
     shapes = mode_shapes.of_blade(of_blade)
-    count = whole(main, keys(main), "BldNodes")
+    count = integer(main, keys(main), "BldNodes")
     if not shapes or count < 1:
         return ()
     name = f"in ElastoDyn's {len(shapes)} assumed shapes on {count} nodes"

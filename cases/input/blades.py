@@ -164,8 +164,8 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
             raise CaseError(
                 f"{path}: fraction [-]: last is {fraction[-1]:g}: stations are fractions of length; end at 1"
             )
-        I_flap, I_edge, ahead = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL[len(self.RIGID) :])
-        sections = offset(section_mass(mass, I_flap, I_edge), ahead * (not self.centred))
+        I_flap, I_edge, mass_offset = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL[len(self.RIGID) :])
+        sections = offset(section_mass(mass, I_flap, I_edge), mass_offset * (not self.centred))
         try:
             blade = Blade(
                 name=name,
@@ -207,9 +207,9 @@ def stepped(blade: Blade, ends: np.ndarray) -> Blade:
     )
 
 
-def offset(mass: np.ndarray, ahead: np.ndarray) -> np.ndarray:
-    """Transfer section masses (n, 6, 6) from their mass centres to an axis ``ahead`` (n,) m behind these, along y."""
-    from_axis = sp.adjoint(sp.pose(np.eye(3), np.multiply.outer(-ahead, [0.0, 1.0, 0.0])))
+def offset(mass: np.ndarray, distance: np.ndarray) -> np.ndarray:
+    """Transfer section masses (n, 6, 6) from their mass centres to an axis ``distance`` (n,) m behind these, along y."""
+    from_axis = sp.adjoint(sp.pose(np.eye(3), np.multiply.outer(-distance, [0.0, 1.0, 0.0])))
     return np.swapaxes(from_axis, -1, -2) @ mass @ from_axis
 
 
@@ -229,7 +229,7 @@ def read_table(path: Path, needed: tuple[str, ...], optional: tuple[str, ...] = 
     Raises:
         CaseError: if the table is invalid; the message names file, line and column.
     """
-    table = files.table(path, absent="paths in a case are relative to its file; correct the name")
+    table = files.table(path, remedy="paths in a case are relative to its file; correct the name")
     numbers, rows = zip(*table, strict=True)
     header = rows[0]
     for column in header:

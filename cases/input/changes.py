@@ -82,16 +82,16 @@ def _stiffness(strain: int) -> Callable[[Blade, PropertyChange], Blade]:
             if np.isinf(section[strain, strain]):
                 raise CaseError(f"--set {change}: {change.name} is rigid in this blade: a factor changes nothing")
             soft = np.flatnonzero(np.isfinite(section.diagonal()))
-            place = int(np.flatnonzero(soft == strain)[0])
+            position = int(np.flatnonzero(soft == strain)[0])
             part = section[np.ix_(soft, soft)]
             if strain == AXIAL:
-                column = part[:, place]
-                part = part + (change.value - 1.0) * np.outer(column, column) / part[place, place]
-                part[place] = part[:, place] = change.value * column
+                column = part[:, position]
+                part = part + (change.value - 1.0) * np.outer(column, column) / part[position, position]
+                part[position] = part[:, position] = change.value * column
             else:
-                others = np.arange(len(part)) != place
-                coupled = part[place, others] @ np.linalg.solve(part[np.ix_(others, others)], part[others, place])
-                part[place, place] = coupled + change.value * (part[place, place] - coupled)
+                rest = np.arange(len(part)) != position
+                coupled = part[position, rest] @ np.linalg.solve(part[np.ix_(rest, rest)], part[rest, position])
+                part[position, position] = coupled + change.value * (part[position, position] - coupled)
             section[np.ix_(soft, soft)] = part
         return replace(blade, stiffness=stiffness)
 

@@ -38,8 +38,8 @@ class FilesMissingError(CaseError):
 def nearest(word: str, names: Iterable[str]) -> str:
     """Suggestion for an unknown word: the nearest known word, else all of them."""
     names = tuple(names)
-    near = get_close_matches(word, names, 1, cutoff=0.5)
-    return f"did you mean {near[0]}?" if near else f"give one of {', '.join(names)}"
+    matches = get_close_matches(word, names, 1, cutoff=0.5)
+    return f"did you mean {matches[0]}?" if matches else f"give one of {', '.join(names)}"
 
 
 def rad_s(omega: float) -> str:

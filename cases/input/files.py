@@ -73,7 +73,7 @@ def root_allowed(root: Path) -> AbstractContextManager[None]:
     return _set(_roots, (*_roots.get(), _resolved(root)))
 
 
-def reading(*named: Path, deck: bool = False) -> AbstractContextManager[None]:
+def reading(*paths: Path, deck: bool = False) -> AbstractContextManager[None]:
     """Context manager that restricts reading to the folders of the files that the user named.
 
     HAWC2 resolves paths from the model's folder: the parent of an htc file's folder, if that is called ``htc``. The files of a
@@ -84,15 +84,15 @@ def reading(*named: Path, deck: bool = False) -> AbstractContextManager[None]:
     """
     if _allowed.get():
         return nullcontext()
-    folders = [_resolved(path.parent.parent if _resolved(path.parent).name == "htc" else path.parent) for path in named]
-    above = {folder.parent for folder in folders if deck and not _resolved(Path.home()).is_relative_to(folder.parent)}
-    return _set(_allowed, Allowed((*folders, *map(_resolved, named)), tuple(above)))  # a named file may be a link
+    folders = [_resolved(path.parent.parent if _resolved(path.parent).name == "htc" else path.parent) for path in paths]
+    parents = {folder.parent for folder in folders if deck and not _resolved(Path.home()).is_relative_to(folder.parent)}
+    return _set(_allowed, Allowed((*folders, *map(_resolved, paths)), tuple(parents)))  # a named file may be a link
 
 
 def reading_also(folder: Path) -> AbstractContextManager[None]:
     """Context manager that also allows ``folder``, which the user named other than by a file."""
-    now = _allowed.get() or Allowed(())
-    return _set(_allowed, replace(now, folders=(*now.folders, _resolved(folder))))
+    current = _allowed.get() or Allowed(())
+    return _set(_allowed, replace(current, folders=(*current.folders, _resolved(folder))))
 
 
 def _resolved(path: Path) -> Path:
@@ -128,12 +128,12 @@ def _in_subfolder(file: Path, tree: Path) -> bool:
     return bool(folders) and not any(name.startswith(".") for name in folders)
 
 
-def text(path: Path, absent: str = "correct the path", older: bool = False) -> str:
+def text(path: Path, remedy: str = "correct the path", older: bool = False) -> str:
     """Read a text file: UTF-8, or UTF-16 with a byte order mark.
 
     Args:
         path: path of the file.
-        absent: remedy in the message if the file does not exist.
+        remedy: in the message if the file does not exist.
         older: whether a file that is not UTF-8 is decoded as Latin-1, in which every byte is a character.
 
     Raises:
@@ -143,7 +143,7 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
     try:
         raw = read_bytes(path)
     except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: {absent}") from None
+        raise CaseError(f"{path}: no such file: {remedy}") from None
     except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file that can") from error
     marked = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) and not raw.startswith(codecs.BOM_UTF32_LE)
@@ -168,7 +168,7 @@ def text(path: Path, absent: str = "correct the path", older: bool = False) -> s
     return content
 
 
-def table(path: Path, absent: str) -> list[tuple[int, list[str]]]:
+def table(path: Path, remedy: str) -> list[tuple[int, list[str]]]:
     """Read the rows of a CSV file with their line numbers.
 
     ``#`` starts a comment; the header determines the separator: commas, semicolons or tabs.
@@ -176,7 +176,7 @@ def table(path: Path, absent: str) -> list[tuple[int, list[str]]]:
     Raises:
         CaseError: as ``text``, and if there are only comments.
     """
-    lines = [(k, line.partition("#")[0]) for k, line in enumerate(text(path, absent).splitlines(), 1)]
+    lines = [(k, line.partition("#")[0]) for k, line in enumerate(text(path, remedy).splitlines(), 1)]
     lines = [(k, line) for k, line in lines if line.strip()]
     if not lines:
         raise CaseError(f"{path}: only comments: give a header and rows")

@@ -23,13 +23,13 @@ def names() -> tuple[str, ...]:
 
 def load_all() -> tuple[dict[str, Case], dict[str, str]]:
     """The cases of the package by name, and the remedy for each whose blade files are not included and not found."""
-    present, absent = {}, {}
+    cases, failures = {}, {}
     for name in names():
         try:
-            present[name] = load(name)
+            cases[name] = load(name)
         except FilesMissingError as error:
-            absent[name] = str(error).removeprefix(f"{name}: ")
-    return present, absent
+            failures[name] = str(error).removeprefix(f"{name}: ")
+    return cases, failures
 
 
 def mechanisms() -> tuple[str, ...]:
@@ -101,10 +101,10 @@ def select(name: str) -> Case:
     if name.endswith(".toml") or not blade:
         return load(name)
     case = load(stem)
-    kept = tuple(v for v in case.variants if v.name == name)
-    if not kept:
+    variants = tuple(v for v in case.variants if v.name == name)
+    if not variants:
         raise CaseError(f"case: {name!r}: no such blade: {nearest(name, [v.name for v in case.variants])}")
-    return replace(case, variants=kept)
+    return replace(case, variants=variants)
 
 
 def is_blade_file(name: str) -> bool:

@@ -192,10 +192,11 @@ def _pose(frame: Frame, where: str) -> Array:
 def _moments(value: list[float | list[float]], where: str) -> Array:
     """An inertia tensor (3, 3); no principal moment may exceed the sum of the others."""
     out = _matrix(value, 3, where)
-    least, middle, most = np.linalg.eigvalsh(out).tolist()
-    if least < -1e-6 * most or most > (least + middle) * (1 + 1e-6):
+    smallest, middle, largest = np.linalg.eigvalsh(out).tolist()
+    if smallest < -1e-6 * largest or largest > (smallest + middle) * (1 + 1e-6):
         raise CaseError(
-            f"{where}: {most:g} is more than {least:g} and {middle:g} together: not physically possible; check the moments"
+            f"{where}: {largest:g} is more than {smallest:g} and {middle:g} together: "
+            "not physically possible; check the moments"
         )
     return out
 
@@ -223,9 +224,9 @@ def _check_names(text: MechanismFile, mechanism: mb.Mechanism, guess: Mapping[st
         coordinates = compile_tree(at_time(mechanism, 0.0)).coordinates
     except mb.MechanismError as error:
         raise CaseError(f"{path}: {error}") from error
-    used = [("motions", m.coordinate) for m in mechanism.motions]
-    used += [("coordinate_springs", s.coordinate) for s in mechanism.coordinate_springs]
-    used += [("guess", name) for name in guess] + [("independent", name) for name in text.independent]
-    for field, name in used:
+    references = [("motions", m.coordinate) for m in mechanism.motions]
+    references += [("coordinate_springs", s.coordinate) for s in mechanism.coordinate_springs]
+    references += [("guess", name) for name in guess] + [("independent", name) for name in text.independent]
+    for field, name in references:
         if name not in coordinates:
             raise CaseError(f"{path}: {field}: {name!r}: no joint has this coordinate: {nearest(name, coordinates)}")

@@ -21,6 +21,6 @@ Typed = Annotated[
 """A name used on the command line."""
 
 
-def named(text: str) -> bool:
+def has_name(text: str) -> bool:
     """Whether a text is a valid ``Name``."""
     return 0 < len(text) <= MAX_NAME and text.isprintable()

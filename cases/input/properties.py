@@ -122,12 +122,14 @@ def sections(blade: Blade) -> SectionProperties:
     s = _compliance(blade)
     bend = s[:, BEND_Y:, BEND_Y:]
     flexural: Array = np.linalg.inv(bend).astype(float)
-    alone = -(flexural @ s[:, BEND_Y:, AXIAL][..., None])[..., 0]  # moments that undo the bending of a unit axial force
-    tension = np.stack([-alone[:, 1], alone[:, 0]], axis=1)
+    compensation = -(flexural @ s[:, BEND_Y:, AXIAL][..., None])[
+        ..., 0
+    ]  # moments that undo the bending of a unit axial force
+    tension = np.stack([-compensation[:, 1], compensation[:, 0]], axis=1)
     torsion = s[:, TORSION, TORSION]
-    across = np.stack([-s[:, TORSION, SHEAR_Z], s[:, TORSION, SHEAR_Y]], axis=1)
-    shear = np.divide(across, torsion[:, None], out=np.zeros_like(across), where=torsion[:, None] > 0)
-    axial = s[:, AXIAL, AXIAL] + (s[:, AXIAL, BEND_Y:] * alone).sum(1)
+    couplings = np.stack([-s[:, TORSION, SHEAR_Z], s[:, TORSION, SHEAR_Y]], axis=1)
+    shear = np.divide(couplings, torsion[:, None], out=np.zeros_like(couplings), where=torsion[:, None] > 0)
+    axial = s[:, AXIAL, AXIAL] + (s[:, AXIAL, BEND_Y:] * compensation).sum(1)
     principal, flap, edge = _axes(flexural)
     own = m[:, 4:, 4:] - mass[:, None, None] * _spread(mass_centre)
     return SectionProperties(

@@ -167,7 +167,7 @@ def _tables(text: CaseFile, path: str, folder: Path) -> tuple[str, ...]:
     for table in text.compare.tables:
         if table.endswith(".toml"):
             file = folder / table
-            files.text(file, absent="paths in a case are relative to its file; correct the name")
+            files.text(file, remedy="paths in a case are relative to its file; correct the name")
             try:
                 published.load(str(file.resolve()))
             except published.TableError as error:
@@ -193,8 +193,8 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
     speeds = rad_s(text.speeds, path, isinstance(text.blade, Dimensionless))
     variants = []
     for label, changes in (text.variants or {"": {}}).items():
-        changed, where = {**data, "blade": {**data["blade"], **changes}}, f"{path}: variants.{label}" if label else path
-        blade = convert(changed, CaseFile, where).blade
+        tables, where = {**data, "blade": {**data["blade"], **changes}}, f"{path}: variants.{label}" if label else path
+        blade = convert(tables, CaseFile, where).blade
         name = f"{text.name}/{label}" if label else text.name
         try:
             as_given, unused_values = blade.read(name, folder)
@@ -212,10 +212,12 @@ def _confirmed(text: CaseFile, path: str) -> None:
         for label in compare.groups:
             if label not in text.variants:
                 raise CaseError(f"{path}: compare.groups.{label}: no such variant: {nearest(label, text.variants)}")
-    none = any(compare.required(label) == 0 for label in text.variants or {"": {}})
-    if none != bool(compare.lacking):
-        what = "0, and no reason" if none else "above 0, and a reason for none"
-        raise CaseError(f"{path}: compare.groups: {what}: give groups = 0 and compare.lacking together, or neither")
+    exempt = any(compare.required(label) == 0 for label in text.variants or {"": {}})
+    if exempt != bool(compare.lacking):
+        stated_groups = "0, and no reason" if exempt else "above 0, and a reason for none"
+        raise CaseError(
+            f"{path}: compare.groups: {stated_groups}: give groups = 0 and compare.lacking together, or neither"
+        )
 
 
 FASTEST, MOST_SPEEDS = 1e6, 10_000
@@ -253,13 +255,13 @@ def speed_range(text: str) -> NDArray[np.float64]:
     return np.array([*speeds, last] if last - speeds[-1] > 1e-9 * step else speeds)
 
 
-def rad_s(given: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.float64]:
+def rad_s(table: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.float64]:
     """The speeds of a file in rad/s, ascending (unchanged if given as γ).
 
     Raises:
         CaseError: if there are no or several units, no speeds, or the speeds do not ascend.
     """
-    units = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(given, unit)) is not UNSET}
+    units = {unit: value for unit in ("rad_s", "rpm", "gamma") if (value := getattr(table, unit)) is not UNSET}
     if len(units) != 1:
         listed = ", ".join(units) or "none"
         raise CaseError(f"{path}: speeds: {listed} given: give exactly one of rad_s, rpm, gamma")

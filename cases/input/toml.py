@@ -17,13 +17,13 @@ from .names import RULE
 T = TypeVar("T")
 
 
-def document(path: Path, absent: str = "correct the path") -> dict[str, Any]:
-    """Read the tables of a TOML file; ``absent`` is the remedy if it does not exist.
+def document(path: Path, remedy: str = "correct the path") -> dict[str, Any]:
+    """Read the tables of a TOML file; ``remedy`` is the remedy if it does not exist.
 
     Raises:
         CaseError: if the file does not exist, is not text, not TOML, or nested too deeply.
     """
-    text = files.text(path, absent=absent)
+    text = files.text(path, remedy=remedy)
     try:
         for k, line in enumerate(text.splitlines(), 1):
             if line.count(".") > DEEPEST and max(part.count(".") for part in re.split("[,=]", line)) > DEEPEST:
@@ -55,9 +55,9 @@ def _depth(value: Any) -> int:
     """Nesting depth of tables and lists, counted up to one above the limit."""
     layer, depth = [value], 0
     while layer and depth <= DEEPEST:
-        inner = [v for v in layer if isinstance(v, (dict, list))]
-        layer = [item for v in inner for item in (v.values() if isinstance(v, dict) else v)]
-        depth += bool(inner)
+        nested = [v for v in layer if isinstance(v, (dict, list))]
+        layer = [item for v in nested for item in (v.values() if isinstance(v, dict) else v)]
+        depth += bool(nested)
     return depth
 
 
@@ -88,12 +88,12 @@ def finite(value: Any, path: str, field: str = "") -> None:
     elif isinstance(value, float) and not math.isfinite(value):
         raise CaseError(f"{path}: {field}: {value}: not a finite number: fill gaps in the data")
     elif isinstance(value, int | float) and abs(value) > MAX_NUMBER:
-        shown = f"{value:.3g}" if isinstance(value, float) or abs(value) < 10**300 else "more than 300 digits"
-        raise CaseError(f"{path}: {field}: {shown}: implausibly large; check the exponent")
+        size = f"{value:.3g}" if isinstance(value, float) or abs(value) < 10**300 else "more than 300 digits"
+        raise CaseError(f"{path}: {field}: {size}: implausibly large; check the exponent")
 
 
-def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
-    """Convert ``data`` to a ``kind``; ``under`` is the field that contains it.
+def convert(data: Any, kind: type[T], path: str, container: str = "") -> T:
+    """Convert ``data`` to a ``kind``; ``container`` is the field that contains it.
 
     Raises:
         CaseError: naming the invalid field.
@@ -105,14 +105,14 @@ def convert(data: Any, kind: type[T], path: str, under: str = "") -> T:
     except msgspec.ValidationError as error:
         message, _, where = str(error).partition(" - at `")
         if where.startswith("key"):
-            table = ".".join(filter(None, (under, where.partition("$")[2].strip("`."))))
+            table = ".".join(filter(None, (container, where.partition("$")[2].strip("`."))))
             raise CaseError(f"{path}: {table}: a key that is not a name: {RULE}: correct it") from error
         where = where.removeprefix("$")
-        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data, kind, under)}") from error
+        raise CaseError(f"{path}: {_explain(message, where.strip('`.'), data, kind, container)}") from error
 
 
-def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
-    full = ".".join(part for part in (under, field) if part).replace(".[", "[")
+def _explain(message: str, field: str, raw: Any, kind: type, container: str) -> str:
+    full = ".".join(part for part in (container, field) if part).replace(".[", "[")
     key = re.search(r"field `(.+)`", message)
     if key:
         dotted = f"{full}.{key[1]}" if full else key[1]
@@ -127,7 +127,7 @@ def _explain(message: str, field: str, raw: Any, kind: type, under: str) -> str:
     choices = _choices(node)
     if not choices:  # the tag of a structure belongs to its union, not to the structure's fields
         table, _, _ = field.rpartition(".")
-        choices = _choices(_walk(kind, table, raw, whole=True)[1])
+        choices = _choices(_walk(kind, table, raw, full_union=True)[1])
     if isinstance(value, str) and choices and "nvalid" in message:
         return f"{full}: {_short(repr(value))}: not one of its values: {nearest(value, choices)}"
     sentence = message[0].lower() + message[1:].replace("`", "")
@@ -147,8 +147,8 @@ def _keys(kind: type, field: str, raw: Any) -> tuple[str, ...]:
     return tuple(f.encode_name for f in node.fields) if isinstance(node, inspect.StructType) else ()
 
 
-def _walk(kind: type, field: str, raw: Any, whole: bool = False) -> tuple[Any, Any]:
-    """The value in a field, as given, and its expected type; with ``whole``, the complete union."""
+def _walk(kind: type, field: str, raw: Any, full_union: bool = False) -> tuple[Any, Any]:
+    """The value in a field, as given, and its expected type; with ``full_union``, the complete union."""
     node: Any = _plain(inspect.type_info(kind), raw)
     steps = re.findall(r"[^.\[\]]+", field)
     for k, step in enumerate(steps):
@@ -157,15 +157,15 @@ def _walk(kind: type, field: str, raw: Any, whole: bool = False) -> tuple[Any, A
         elif isinstance(raw, Mapping) and step in raw:
             raw = raw[step]
             node = next((f.type for f in getattr(node, "fields", ()) if f.encode_name == step), None)
-        node = _plain(node, raw, whole and k == len(steps) - 1)
+        node = _plain(node, raw, full_union and k == len(steps) - 1)
     return raw, node
 
 
-def _plain(node: Any, raw: Any, whole: bool = False) -> Any:
+def _plain(node: Any, raw: Any, full_union: bool = False) -> Any:
     """The type without annotations; of a union, the member that the value's tag names, or the only structure."""
     while isinstance(node, inspect.Metadata):
         node = node.type
-    if isinstance(node, inspect.UnionType) and not (whole or isinstance(raw, str)):
+    if isinstance(node, inspect.UnionType) and not (full_union or isinstance(raw, str)):
         kinds = [k for k in (_plain(t, raw) for t in node.types) if isinstance(k, inspect.StructType)]
         tagged = [k for k in kinds if k.tag_field and isinstance(raw, Mapping) and raw.get(k.tag_field) == k.tag]
         return next(iter(tagged or kinds), None)

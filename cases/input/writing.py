@@ -7,13 +7,13 @@ from .errors import CaseError
 
 
 @contextmanager
-def writable(what: str, other: str = "folder") -> Iterator[None]:
+def writable(target: str, kind: str = "folder") -> Iterator[None]:
     """Turn an ``OSError`` into the error that names the option and its value, such as ``--out DIR``.
 
     Raises:
-        CaseError: if ``what`` cannot be written; ``other``: what to give instead.
+        CaseError: if ``target`` cannot be written; ``kind``: what to give instead.
     """
     try:
         yield
     except OSError as error:
-        raise CaseError(f"{what}: cannot be written ({error.strerror}): give another {other}") from error
+        raise CaseError(f"{target}: cannot be written ({error.strerror}): give another {kind}") from error

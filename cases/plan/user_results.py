@@ -133,7 +133,7 @@ def read(name: str, path: Path, defaults: Defaults | None = None) -> UserResults
     """
     if path.suffix.lower() == ".out":
         return UserResults(name, str(path), tuple(UserFrequency(*row) for row in bmodes_output.read(path)))
-    (first, header), *table = files.table(path, absent="give NAME=FILE.csv")
+    (first, header), *table = files.table(path, remedy="give NAME=FILE.csv")
     columns = _header(header, f"{path}: line {first}")
     if not table:
         raise CaseError(f"{path}: only a header: add a line for every frequency, as `0, 0.932, flapwise 1`")

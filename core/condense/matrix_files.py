@@ -26,7 +26,7 @@ import scipy.sparse as ss
 from ..regular_files import LARGEST_DATA, read_bytes
 from . import matrix_market
 from .exported import Exported, MatrixFileError, assembled, labelled
-from .matrix_words import real, reals, whole, wholes
+from .matrix_words import integer, integers, real, reals
 
 REAL = (1, 2)
 SQUARE, SYMMETRIC = 1, 6
@@ -76,7 +76,7 @@ def stored(path: Path) -> Exported:
         )
     if any(len(w) != 2 for w in words):
         raise MatrixFileError(f"{dof.name}: expected node.component on each line, as CalculiX writes it")
-    freedoms = np.array([[whole(dof.name, k, v) for v in w] for k, w in enumerate(words, 1)])
+    freedoms = np.array([[integer(dof.name, k, v) for v in w] for k, w in enumerate(words, 1)])
     return labelled(path.name, matrix, freedoms)
 
 
@@ -91,14 +91,14 @@ def _user_element(name: str, lines: list[str], requested: str) -> Exported:
             if "ELEMENT NODES" in line:
                 card = "nodes"
             elif card == "nodes" and re.fullmatch(r"[*\s\d,]+", line):
-                nodes += [whole(name, number, v) for v in re.findall(r"\d+", line)]
+                nodes += [integer(name, number, v) for v in re.findall(r"\d+", line)]
         elif line.startswith("*"):
             kind = re.search(r"^\*MATRIX\s*,\s*TYPE\s*=\s*(\w+)", line)
             card = kind[1] if kind else ""
             if kind:
                 triangles[card] = []
         elif card == "nodes":
-            numbers = [whole(name, number, w) for w in words]
+            numbers = [integer(name, number, w) for w in words]
             if not numbers:
                 continue
             active[numbers[0] if active else 1] = numbers[1:] if active else numbers
@@ -139,7 +139,7 @@ def _triplets(name: str, lines: list[str]) -> Exported:
     if not rows:
         raise MatrixFileError(f"{name}: no matrix found: docs/condense.md lists the formats")
     *labels, entries = zip(*rows, strict=True)
-    at = np.column_stack([wholes(name, numbers, column) for column in labels])
+    at = np.column_stack([integers(name, numbers, column) for column in labels])
     values = reals(name, numbers, entries)
     if at.shape[1] == 4:
         return assembled(name, at[:, :2], at[:, 2:], values)
@@ -164,21 +164,21 @@ def _dmig(name: str, lines: list[str], requested: str) -> Exported:
         if line.startswith("DMIG"):
             matrix = words[0]
             if words[1] == "0":
-                forms[matrix] = whole(name, number, words[2]), whole(name, number, words[3])
+                forms[matrix] = integer(name, number, words[2]), integer(name, number, words[3])
                 entries[matrix], values[matrix] = [], []
                 continue
             if matrix not in forms:
                 raise MatrixFileError(
                     f"{name}, line {number}: column of {matrix} before its header: the start of the file may be missing"
                 )
-            column = whole(name, number, words[1]), whole(name, number, words[2])
+            column = integer(name, number, words[1]), integer(name, number, words[2])
             words = words[4:] if width == 8 else []
         elif not matrix or line[:1] not in "+* " or not line.strip():
             matrix = matrix if not line.strip() or line.startswith("$") else ""
             continue
         for k in range(0, len(words) - 2, 4):
             if words[k]:
-                row = whole(name, number, words[k]), whole(name, number, words[k + 1])
+                row = integer(name, number, words[k]), integer(name, number, words[k + 1])
                 entries[matrix].append((*row, *column))
                 values[matrix].append(real(name, number, words[k + 2]))
     key = _chosen(name, "DMIG", list(entries), requested)

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse as ss
 
 from .exported import Exported, MatrixFileError
-from .matrix_words import reals, whole, wholes
+from .matrix_words import integer, integers, reals
 
 MOST_ROWS = 1_000_000
 """Largest number of rows; the length of the file limits a dense matrix further."""
@@ -39,14 +39,14 @@ def read_matrix_market(name: str, text: str) -> Exported:
     if len(size) != (3 if sparse else 2):
         raise MatrixFileError(f"{name}: not a Matrix Market file: no line with its size: the file may be truncated")
     number, *numbers = numbers
-    rows, columns, *_ = (whole(name, number, word) for word in size)
+    rows, columns, *_ = (integer(name, number, word) for word in size)
     if rows != columns:
         raise MatrixFileError(f"{name}: a matrix of {rows} × {columns}: a stiffness is square")
     if not 0 < rows <= MOST_ROWS:
         raise MatrixFileError(f"{name}, line {number}: {rows} rows: only 1 to {MOST_ROWS} are read")
     sign, content = SIGN[words[4]], [lines[k - 1] for k in numbers]
     if sparse:
-        return _entries(name, numbers, content, rows, whole(name, number, size[2]), sign)
+        return _entries(name, numbers, content, rows, integer(name, number, size[2]), sign)
     return _whole(name, numbers, content, rows, sign)
 
 
@@ -59,7 +59,7 @@ def _entries(name: str, numbers: list[int], lines: list[str], n: int, count: int
                 f"{name}, line {number}: {columns} columns, expected row, column, value: the line may be truncated"
             )
     words = " ".join(lines).split()
-    i, j = wholes(name, numbers, words[0::3]) - 1, wholes(name, numbers, words[1::3]) - 1
+    i, j = integers(name, numbers, words[0::3]) - 1, integers(name, numbers, words[1::3]) - 1
     values = reals(name, numbers, words[2::3])
     for k in np.flatnonzero((np.minimum(i, j) < 0) | (np.maximum(i, j) >= n))[:1]:
         entry = [int(i[k]) + 1, int(j[k]) + 1]

@@ -19,7 +19,7 @@ LARGEST_ENTRY = 1e30
 _FORM = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([EeDd][+-]?\d+|[+-]\d+)?")
 
 
-def whole(name: str, number: int, word: str) -> int:
+def integer(name: str, number: int, word: str) -> int:
     """Parse a label or an index, positive or negative.
 
     Args:
@@ -52,9 +52,9 @@ def real(name: str, number: int, word: str) -> float:
     return value
 
 
-def wholes(name: str, numbers: Sequence[int], words: Sequence[str]) -> NDArray[np.intp]:
-    """As ``whole``, for many words and the numbers of their lines: (n,)."""
-    return _many(whole, np.intp, "+-0123456789", LARGEST_LABEL - 1, name, numbers, words)
+def integers(name: str, numbers: Sequence[int], words: Sequence[str]) -> NDArray[np.intp]:
+    """As ``integer``, for many words and the numbers of their lines: (n,)."""
+    return _many(integer, np.intp, "+-0123456789", LARGEST_LABEL - 1, name, numbers, words)
 
 
 def reals(name: str, numbers: Sequence[int], words: Sequence[str]) -> NDArray[np.float64]:
@@ -66,7 +66,7 @@ def _many(
     parse: Callable[[str, int, str], float],
     kind: type,
     characters: str,
-    most: float,
+    limit: float,
     name: str,
     numbers: Sequence[int],
     words: Sequence[str],
@@ -75,6 +75,6 @@ def _many(
     if set("".join(words)) <= set(characters):
         with suppress(ValueError, OverflowError):
             values = np.array(words, dtype=kind)
-            if (np.abs(values) <= most).all():
+            if (np.abs(values) <= limit).all():
                 return values
     return np.array([parse(name, k, word) for k, word in zip(numbers, words, strict=True)], dtype=kind)

@@ -73,10 +73,10 @@ def tower(path: Path) -> tuple[Tower, Source]:
     """
     data = _data(path)
     beam, files = _beam(path, data.name or path.stem, data.tower)
-    held = support(path, "tower.support", data.tower.support, data.tower.height)
+    foundation = support(path, "tower.support", data.tower.support, data.tower.height)
     weight = f"gravity {data.gravity:g} m/s²" if data.gravity else "without weight"
-    notes = (*((GROUND,) if held.rigid else ("on the springs of tower.support",)), weight)
-    return Tower(beam, held, data.gravity), Source("Southwell tower", (path, *files), AXES, notes)
+    notes = (*((GROUND,) if foundation.rigid else ("on the springs of tower.support",)), weight)
+    return Tower(beam, foundation, data.gravity), Source("Southwell tower", (path, *files), AXES, notes)
 
 
 def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
@@ -99,8 +99,8 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
     name = data.name or path.stem
     beam, files = _beam(path, f"{name}'s tower", data.tower)
     drive = data.drivetrain
-    held = support(path, "tower.support", data.tower.support, data.tower.height)
-    made = Turbine(
+    foundation = support(path, "tower.support", data.tower.support, data.tower.height)
+    machine = Turbine(
         name=name,
         tower=beam,
         blade=blade.mounted(path),
@@ -113,18 +113,18 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
             drive.stiffness or np.inf, drive.generator_inertia, drive.gear_ratio, drive.generator == "free"
         ),
         gravity=data.gravity,
-        support=held,
+        support=foundation,
         teeter=Teeter(teeter.undersling, teeter.stiffness) if teeter else None,
     )
     notes = (
-        GROUND if held.rigid else "on the springs of tower.support",
+        GROUND if foundation.rigid else "on the springs of tower.support",
         f"gravity {data.gravity:g} m/s² acts on the tower through all that it carries, not on the blades' own motions",
         f"generator {drive.generator}; shaft {f'{drive.stiffness:g} N m/rad' if drive.stiffness else 'rigid'}",
         f"yaw bearing {f'{data.nacelle.yaw_stiffness:g} N m/rad' if data.nacelle.yaw_stiffness else 'locked'}",
         *blade.source.notes,
     )
     source = Source(NAME, (path, *files, *blade.source.files), AXES, notes, blade.source.unused)
-    return made, source, data.rotor_speed * np.pi / 30.0
+    return machine, source, data.rotor_speed * np.pi / 30.0
 
 
 def _blade(path: Path, data: RotorData, mount: Mount) -> readers.Reading:
@@ -133,7 +133,7 @@ def _blade(path: Path, data: RotorData, mount: Mount) -> readers.Reading:
     def radians(option: float | None, degrees: float | None) -> float | None:
         return option if option is not None or degrees is None else float(np.radians(degrees))
 
-    both = Mount(
+    combined = Mount(
         main=mount.main,
         length=mount.length if mount.length is not None else data.length,
         hub_radius=mount.hub_radius if mount.hub_radius is not None else data.hub_radius,
@@ -143,28 +143,28 @@ def _blade(path: Path, data: RotorData, mount: Mount) -> readers.Reading:
         multipliers=mount.multipliers,
         offsets=mount.offsets,
     )
-    return readers.reading(path.parent / data.blade, both)
+    return readers.reading(path.parent / data.blade, combined)
 
 
 def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ...]]:
     """The tower as a beam that stands, and the file read."""
-    lists = {
+    columns = {
         key: getattr(data, key)
         for key in ("stations", "mass", "EI_fore_aft", "EI_side_side", "GJ", "EA")
         if getattr(data, key)
     }
     top = np.zeros((6, 6)) if data.top is None else _body(data.top.mass, data.top.moments, data.top.centre)
     if data.file is not None:
-        if lists:
-            raise CaseError(f"{path}: tower.{next(iter(lists))}: with tower.file, which contains it: leave one out")
+        if columns:
+            raise CaseError(f"{path}: tower.{next(iter(columns))}: with tower.file, which contains it: leave one out")
         file = path.parent / data.file
         beam, _ = elastodyn_tower.beam(load(file), data.height)
         return Blade(name, beam.stations, beam.stiffness, beam.mass, beam.twist, tip_mass=top), (file,)
     for key in ("stations", "mass", "EI_fore_aft"):
-        if key not in lists:
+        if key not in columns:
             raise CaseError(f"{path}: tower.{key}: missing: give it at every station, or tower.file")
     count = len(data.stations)
-    for key, values in lists.items():
+    for key, values in columns.items():
         if len(values) != count:
             raise CaseError(f"{path}: tower.{key}: {len(values)} values for {count} stations: give one per station")
         if key != "stations" and min(values) <= 0:
@@ -176,7 +176,7 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
         )
 
     def column(key: str, otherwise: object) -> Array:
-        return np.array(lists.get(key, otherwise), float)
+        return np.array(columns.get(key, otherwise), float)
 
     rigid = np.full(count, np.inf)
     try:
@@ -198,27 +198,27 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
     return beam, ()
 
 
-def support(path: Path, key: str, given: SupportData, height: float) -> Support:
+def support(path: Path, key: str, data: SupportData, height: float) -> Support:
     """The support in the table ``key`` of a tower of this height, m.
 
     Raises:
         CaseError: naming the field at fault.
     """
     base = None
-    if given.stiffness is not None:
-        K = _six(f"{path}: {key}.stiffness", given.stiffness)
+    if data.stiffness is not None:
+        K = _six(f"{path}: {key}.stiffness", data.stiffness)
         base = in_axes(K, BEAMDYN)
-        clamped = [DIRECTIONS.index(name) for name in given.clamped]
-        for k, name in zip(clamped, given.clamped, strict=True):
+        clamped = [DIRECTIONS.index(name) for name in data.clamped]
+        for k, name in zip(clamped, data.clamped, strict=True):
             if K[k].any() or K[:, k].any():
                 raise CaseError(f"{path}: {key}.clamped: {name}: its row of the stiffness is not zero; correct one")
-        turned = np.flatnonzero(np.diagonal(in_axes(np.diag(np.isin(range(6), clamped).astype(float)), BEAMDYN)))
-        base[turned, turned] = np.inf
-    elif given.clamped:
+        directions = np.flatnonzero(np.diagonal(in_axes(np.diag(np.isin(range(6), clamped).astype(float)), BEAMDYN)))
+        base[directions, directions] = np.inf
+    elif data.clamped:
         raise CaseError(f"{path}: {key}.clamped: without a stiffness all directions are clamped: leave it out")
-    springs = tuple((s.height, np.diag([0.0, s.port, s.downwind, 0.0, 0.0, 0.0])) for s in given.springs)
-    mass = None if given.mass is None else in_axes(_six(f"{path}: {key}.mass", given.mass), BEAMDYN)
-    out = Support(base, springs, np.array(given.soil) if given.soil else None, mass)
+    springs = tuple((s.height, np.diag([0.0, s.port, s.downwind, 0.0, 0.0, 0.0])) for s in data.springs)
+    mass = None if data.mass is None else in_axes(_six(f"{path}: {key}.mass", data.mass), BEAMDYN)
+    out = Support(base, springs, np.array(data.soil) if data.soil else None, mass)
     try:
         check_tower(height, out)
     except ValueError as error:
@@ -236,14 +236,14 @@ def _six(where: str, rows: list[list[float]]) -> Array:
 def _body(mass: float, moments: Three, centre: Three) -> Array:
     """(6, 6) inertia in the tower's axes."""
     x, y, z = centre
-    about = np.diag([mass] * 3 + [moments[2], moments[1], moments[0]])
-    return np.ascontiguousarray(transformed(about, sp.pose(np.eye(3), np.array([z, -y, x]))))
+    inertia = np.diag([mass] * 3 + [moments[2], moments[1], moments[0]])
+    return np.ascontiguousarray(transformed(inertia, sp.pose(np.eye(3), np.array([z, -y, x]))))
 
 
 def _hub(data: HubData) -> Array:
-    across = data.transverse_inertia
-    about = np.diag([data.mass] * 3 + [across, across, data.inertia])
-    return np.ascontiguousarray(transformed(about, sp.pose(np.eye(3), np.array([0.0, 0.0, data.centre]))))
+    transverse = data.transverse_inertia
+    inertia = np.diag([data.mass] * 3 + [transverse, transverse, data.inertia])
+    return np.ascontiguousarray(transformed(inertia, sp.pose(np.eye(3), np.array([0.0, 0.0, data.centre]))))
 
 
 def _shaft(data: NacelleData) -> Array:

@@ -40,13 +40,13 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
         return TurbineReading(*turbine_toml.turbine(path, mount or Mount()))
 
 
-def _supported(path: Path, data: DeckData, read: TurbineReading) -> TurbineReading:
+def _supported(path: Path, data: DeckData, reading: TurbineReading) -> TurbineReading:
     """A turbine of OpenFAST's files on the support that a TOML file gives."""
-    held = turbine_toml.support(path, "support", data.support, read.turbine.tower.length)
-    mass = "without its inertia" if held.mass is None else "with its inertia"
+    foundation = turbine_toml.support(path, "support", data.support, reading.turbine.tower.length)
+    mass = "without its inertia" if foundation.mass is None else "with its inertia"
     note = f"the tower's base is held by the support of {path.name}, {mass}"
-    notes = tuple(note if line == openfast.GROUND else line for line in read.source.notes)
-    unused = tuple(replace(u, why=note) if u.why == openfast.FLOATER else u for u in read.source.unused)
-    source = replace(read.source, files=(path, *read.source.files), notes=notes, unused=unused)
-    turbine = replace(read.turbine, name=data.name or read.turbine.name, support=held)
-    return replace(read, turbine=turbine, source=source)
+    notes = tuple(note if line == openfast.GROUND else line for line in reading.source.notes)
+    unused = tuple(replace(u, why=note) if u.why == openfast.FLOATER else u for u in reading.source.unused)
+    source = replace(reading.source, files=(path, *reading.source.files), notes=notes, unused=unused)
+    turbine = replace(reading.turbine, name=data.name or reading.turbine.name, support=foundation)
+    return replace(reading, turbine=turbine, source=source)

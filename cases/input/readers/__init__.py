@@ -17,7 +17,7 @@ import numpy as np
 from ....core.blade import Blade, BladeError
 from .. import files
 from ..errors import CaseError
-from ..names import MAX_NAME, named
+from ..names import MAX_NAME, has_name
 from .source import BladeFile, Mount, Reading, Source, Unused
 
 __all__ = ["FORMATS", "BladeFile", "Mount", "Reading", "Source", "Unused", "read", "reading", "recognise"]
@@ -50,21 +50,21 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
     deck = path.suffix.lower() not in _BY_SUFFIX
     with files.reading(path, *([mount.main] if mount and mount.main else []), deck=deck):
         try:
-            read = recognise(path)(path, mount)
+            blade_reading = recognise(path)(path, mount)
         except (
             BladeError
         ) as error:  # of a value that a reader adds to a valid blade, such as the tip mass of a main file
             raise CaseError(f"{path}: {error}") from error
     if mount is not None:
-        for option, given, format in (
+        for option, setting, format in (
             ("multipliers", mount.multipliers, "ElastoDyn"),
             ("subset", mount.subset, "HAWC2"),
             ("offsets", mount.offsets, "ElastoDyn"),
         ):
-            if given is not None and read.source.format != format:
-                raise CaseError(f"{path}: {option}: {read.source.format} has none, {format} has: leave it out")
-    blade = read.blade
-    if not named(blade.name):
+            if setting is not None and blade_reading.source.format != format:
+                raise CaseError(f"{path}: {option}: {blade_reading.source.format} has none, {format} has: leave it out")
+    blade = blade_reading.blade
+    if not has_name(blade.name):
         raise CaseError(f"{path}: name: {blade.name[:MAX_NAME]!r}: a name is one line of at most {MAX_NAME} characters")
     if np.abs(blade.twist).max() > np.pi:
         k = int(np.abs(blade.twist).argmax())
@@ -72,7 +72,7 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
             f"{path}: twist: {np.degrees(blade.twist[k]):.6g} degrees at {blade.stations[k]:g} m: more than half a "
             "turn: check the unit and the column"
         )
-    return read
+    return blade_reading
 
 
 def recognise(path: Path) -> Callable[[Path, Mount | None], Reading]:

@@ -19,10 +19,10 @@ from ..errors import CaseError
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
 from .openfast.elastodyn import complete
 from .source import OPENFAST_AXES, Mount, Reading, Source
-from .text import Table, Text, fractions, keys, leading, load, table, value, whole, word
+from .text import Table, Text, fractions, integer, keys, leading, load, table, value, word
 
 Array = NDArray[np.float64]
-Named = dict[str, tuple[int, str]]
+Entries = dict[str, tuple[int, str]]
 
 NAME = "BModes"
 COLUMNS = (
@@ -57,32 +57,32 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: naming the file and line at fault.
     """
     main = load(path)
-    named = keys(main)
-    if "beam_type" in named and whole(main, named, "beam_type") != 1:
+    entries = keys(main)
+    if "beam_type" in entries and integer(main, entries, "beam_type") != 1:
         raise CaseError(
-            f"{main.at(named['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade, or use `southwell modes`"
+            f"{main.at(entries['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade, or use `southwell modes`"
         )
-    sections = section_table(main, named)
+    sections = section_table(main, entries)
     text = sections.text
     sections.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
     sections.positive("flp_iner", "edge_iner", zero=True)
     eta = fractions(sections, "sec_loc")
-    by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
+    by = {column: value(main, entries, factor) for factor, column in FACTORS.items()}
     p = {name: sections[name] * by.get(name, 1.0) for name in COLUMNS}
 
-    tip, hub_radius = value(main, named, "radius"), value(main, named, "hub_rad")
+    tip, hub_radius = value(main, entries, "radius"), value(main, entries, "hub_rad")
     if tip <= hub_radius:
         raise CaseError(
-            f"{main.at(named['radius'][0])}: radius: {tip:g} m is not beyond hub_rad, {hub_radius:g} m: no blade between "
+            f"{main.at(entries['radius'][0])}: radius: {tip:g} m is not beyond hub_rad, {hub_radius:g} m: no blade between "
             "them; correct one"
         )
-    stated = Mount(
+    file_mount = Mount(
         length=tip - hub_radius,
         hub_radius=hub_radius,
-        precone=np.radians(value(main, named, "precone")),
-        pitch=-np.radians(value(main, named, "bl_thp")),
+        precone=np.radians(value(main, entries, "precone")),
+        pitch=-np.radians(value(main, entries, "bl_thp")),
     )
-    mounted = complete(mount or Mount(), stated)
+    mounted = complete(mount or Mount(), file_mount)
     y_mass, y_tension = -(p["cg_offst"] - p["sc_offst"]), -(p["tc_offst"] - p["sc_offst"])
     stretch = about(bending(p["axial_stff"], p["flp_stff"], p["edge_stff"]), y_tension, 0.0)
     inertia = rotated(
@@ -98,44 +98,44 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             hub_radius=mounted.hub_radius or 0.0,
             precone=mounted.precone or 0.0,
             pitch=mounted.pitch or 0.0,
-            tip_mass=_tip(main, named),
-            root=np.array(_root(main, named)),
+            tip_mass=_tip(main, entries),
+            root=np.array(_root(main, entries)),
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
     axes = f"{OPENFAST_AXES}; mass and tension centres off the axis along the section's y"
-    factor = value(main, {"rpm_mult": (0, "1"), **named}, "romg_mult", "rpm_mult")
-    speed = value(main, named, "rot_rpm", "romg") * factor * np.pi / 30
-    return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, named, main)), speed)
+    factor = value(main, {"rpm_mult": (0, "1"), **entries}, "romg_mult", "rpm_mult")
+    speed = value(main, entries, "rot_rpm", "romg") * factor * np.pi / 30
+    return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, entries, main)), speed)
 
 
-def section_table(main: Text, named: Named) -> Table:
+def section_table(main: Text, entries: Entries) -> Table:
     """The table ``COLUMNS`` of the file that a main file names.
 
     Raises:
         CaseError: naming the file and line at fault.
     """
-    text = load(main.path.parent / word(main, named, "sec_props_file").replace("\\", "/"))
+    text = load(main.path.parent / word(main, entries, "sec_props_file").replace("\\", "/"))
     own = keys(text)
-    count = whole(text, own, "n_secs")
+    count = integer(text, own, "n_secs")
     start = own["n_secs"][0] + 1
     while start < len(text.lines) and not leading(text.lines[start]):
         start += 1
     return table(text, start, count, COLUMNS)
 
 
-def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
+def _notes(p: dict[str, Array], entries: Entries, main: Text) -> tuple[str, ...]:
     out = ["shear is rigid"]
-    scaled = [f for f in FACTORS if value(main, named, f) != 1]
+    scaled = [f for f in FACTORS if value(main, entries, f) != 1]
     if scaled:
-        out.append(f"multiplied: {', '.join(f'{f} = {value(main, named, f):g}' for f in scaled)}")
-    if "nselt" in named:
+        out.append(f"multiplied: {', '.join(f'{f} = {value(main, entries, f):g}' for f in scaled)}")
+    if "nselt" in entries:
         out.append(
-            f"not used: BModes' own mesh (nselt = {named['nselt'][1]}); here the mesh is refined to the accuracy, and "
+            f"not used: BModes' own mesh (nselt = {entries['nselt'][1]}); here the mesh is refined to the accuracy, and "
             "frequencies that BModes prints with few elements differ by up to several per cent"
         )
-    arm = value(main, named, "cm_loc"), value(main, named, "cm_axial")
-    if any(arm) and any(value(main, named, n) for n in ("ixx_tip", "iyy_tip", "izz_tip")):
+    arm = value(main, entries, "cm_loc"), value(main, entries, "cm_axial")
+    if any(arm) and any(value(main, entries, n) for n in ("ixx_tip", "iyy_tip", "izz_tip")):
         out.append(
             "moments of the tip mass are about the tip section's axes, as the file's comments say; BModes 3 itself takes them "
             "about the mass centre"
@@ -145,25 +145,25 @@ def _notes(p: dict[str, Array], named: Named, main: Text) -> tuple[str, ...]:
     return tuple(out)
 
 
-def _root(main: Text, named: Named) -> list[float]:
-    kind = whole(main, named, "hub_conn")
+def _root(main: Text, entries: Entries) -> list[float]:
+    kind = integer(main, entries, "hub_conn")
     if kind not in ROOTS:
         raise CaseError(
-            f"{main.at(named['hub_conn'][0])}: hub_conn: {kind}: a blade needs a hub: give 1 (clamped) or 4 (pinned)"
+            f"{main.at(entries['hub_conn'][0])}: hub_conn: {kind}: a blade needs a hub: give 1 (clamped) or 4 (pinned)"
         )
     return ROOTS[kind]
 
 
-def _tip(main: Text, named: Named) -> Array:
+def _tip(main: Text, entries: Entries) -> Array:
     """The tip's rigid body (6, 6) about the axis, in section axes; BModes' moments are about the tip section's axes."""
     names = ("tip_mass", "cm_loc", "cm_axial", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
-    m, y, z, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
+    m, y, z, xx, yy, zz, xy, zx, yz = (value(main, entries, n) for n in names)
     cross = m * np.array([[0.0, -z, y], [z, 0.0, 0.0], [-y, 0.0, 0.0]])
     tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]])
     tip = in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
-    if tip.any() and (wrong := body_fault(tip, "kg")):
+    if tip.any() and (fault := body_fault(tip, "kg")):
         raise CaseError(
-            f"{main.at(named['ixx_tip'][0])}: tip_mass, ixx_tip, iyy_tip, izz_tip: {wrong}; moments of 0 leave out the tip's "
+            f"{main.at(entries['ixx_tip'][0])}: tip_mass, ixx_tip, iyy_tip, izz_tip: {fault}; moments of 0 leave out the tip's "
             "rotary inertia"
         )
     return tip

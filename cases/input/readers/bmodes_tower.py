@@ -19,10 +19,10 @@ from ....core.space.inertia import transformed
 from ....core.turbine.tower import Support, Tower, check_tower
 from ..errors import CaseError
 from . import bmodes
-from .bmodes import COLUMNS, FACTORS, Named
+from .bmodes import COLUMNS, FACTORS, Entries
 from .matrices import BEAMDYN, in_axes
 from .source import Source, Unused, unused
-from .text import Text, fractions, keys, leading, load, value, whole
+from .text import Text, fractions, integer, keys, leading, load, value
 
 Array = NDArray[np.float64]
 
@@ -44,8 +44,8 @@ LATERAL_FREE = (1, 2, 4, 5)
 
 def matches_format(text: Text) -> bool:
     """Whether these are lines of a main file of a tower."""
-    named = keys(text)
-    return bmodes.matches_format(text) and "beam_type" in named and named["beam_type"][1] == "2"
+    entries = keys(text)
+    return bmodes.matches_format(text) and "beam_type" in entries and entries["beam_type"][1] == "2"
 
 
 def read(path: Path) -> tuple[Tower, Source]:
@@ -55,18 +55,18 @@ def read(path: Path) -> tuple[Tower, Source]:
         CaseError: naming the file and line at fault.
     """
     main = load(path)
-    named = keys(main)
-    rows = bmodes.section_table(main, named)
+    entries = keys(main)
+    rows = bmodes.section_table(main, entries)
     rows.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
     rows.positive("flp_iner", zero=True)
     jumps = _jumps(rows["sec_loc"])
-    by = {column: value(main, named, factor) for factor, column in FACTORS.items()}
+    by = {column: value(main, entries, factor) for factor, column in FACTORS.items()}
     p = {name: rows[name] * by.get(name, 1.0) for name in COLUMNS}
-    draft = value(main, named, "draft") if "draft" in named else 0.0
-    height = value(main, named, "radius") + draft - value(main, named, "hub_rad")
+    draft = value(main, entries, "draft") if "draft" in entries else 0.0
+    height = value(main, entries, "radius") + draft - value(main, entries, "hub_rad")
     if height <= 0:
         raise CaseError(
-            f"{main.at(named['radius'][0])}: radius: the top is not above the base; correct radius, hub_rad, draft"
+            f"{main.at(entries['radius'][0])}: radius: the top is not above the base; correct radius, hub_rad, draft"
         )
     try:
         beam = Blade(
@@ -75,12 +75,12 @@ def read(path: Path) -> tuple[Tower, Source]:
             stiffness=section_stiffness(p["axial_stff"], p["tor_stff"], p["flp_stff"], p["flp_stff"]),
             mass=section_mass(p["mass_den"], p["flp_iner"], p["flp_iner"]),
             twist=np.zeros(len(rows["sec_loc"])),
-            tip_mass=_top(main, named),
+            tip_mass=_top(main, entries),
         )
     except BladeError as error:
         raise CaseError(f"{rows.text.path}: {error}") from error
-    base, mass, base_note = _base(main, named, draft)
-    wires = _wires(main, named, height)
+    base, mass, base_note = _base(main, entries, draft)
+    wires = _wires(main, entries, height)
     notes = [
         base_note,
         "without weight, as in BModes",
@@ -94,12 +94,12 @@ def read(path: Path) -> tuple[Tower, Source]:
     if wires:
         heights = ", ".join(f"{h:g} m" for h, _ in wires)
         notes.append(f"guy wires at {heights}: their horizontal stiffness")
-    support = Support(base, wires, _soil(main, named, height), mass)
+    support = Support(base, wires, _soil(main, entries, height), mass)
     try:
         check_tower(height, support)
     except ValueError as error:
         raise CaseError(f"{path}: {error}") from error
-    return Tower(beam, support), Source(NAME, (path, rows.text.path), AXES, tuple(notes), _unused(main, named))
+    return Tower(beam, support), Source(NAME, (path, rows.text.path), AXES, tuple(notes), _unused(main, entries))
 
 
 def _jumps(sec_loc: Array) -> Array:
@@ -109,28 +109,28 @@ def _jumps(sec_loc: Array) -> Array:
     return sec_loc[second]
 
 
-def _top(main: Text, named: Named) -> Array:
+def _top(main: Text, entries: Entries) -> Array:
     """(6, 6) inertia at the tower's top."""
     names = ("tip_mass", "cm_loc", "ixx_tip", "iyy_tip", "izz_tip", "ixy_tip", "izx_tip", "iyz_tip")
-    m, x, xx, yy, zz, xy, zx, yz = (value(main, named, n) for n in names)
-    central = "cm_axial" in named  # from BModes 3 on
-    arm = sp.skew(np.array([x, 0.0, value(main, named, "cm_axial") if central else 0.0]))
+    m, x, xx, yy, zz, xy, zx, yz = (value(main, entries, n) for n in names)
+    central = "cm_axial" in entries  # from BModes 3 on
+    arm = sp.skew(np.array([x, 0.0, value(main, entries, "cm_axial") if central else 0.0]))
     cross = m * arm
     tensor = np.array([[xx, -xy, -zx], [-xy, yy, -yz], [-zx, -yz, zz]]) - central * m * arm @ arm
     return in_axes(np.block([[m * np.eye(3), -cross], [cross, tensor]]), BEAMDYN)
 
 
-def _base(main: Text, named: Named, draft: float) -> tuple[Array | None, Array | None, str]:
+def _base(main: Text, entries: Entries, draft: float) -> tuple[Array | None, Array | None, str]:
     """Stiffness and inertia of the base, and a note on them."""
-    kind, at = whole(main, named, "hub_conn"), main.at(named["hub_conn"][0])
+    kind, at = integer(main, entries, "hub_conn"), main.at(entries["hub_conn"][0])
     if kind == CLAMPED:
         return None, None, "clamped at the base (hub_conn = 1)"
     if kind not in (FREE, LATERAL):
         raise CaseError(f"{at}: hub_conn: {kind}: give 1 (clamped), 2 (free on a platform) or 3 (on springs)")
-    below = value(main, named, "ref_msl") - draft if "ref_msl" in named else 0.0
+    below = value(main, entries, "ref_msl") - draft if "ref_msl" in entries else 0.0
     K = _symmetric(main, "hydro_K + mooring_K", _matrix(main, "hydro_K") + _matrix(main, "mooring_K"))
     raised = _raised(K, below)
-    inertia = _raised(_symmetric(main, "hydro_M", _matrix(main, "hydro_M")), below) + _platform(main, named, draft)
+    inertia = _raised(_symmetric(main, "hydro_M", _matrix(main, "hydro_M")), below) + _platform(main, entries, draft)
     mass = inertia if inertia.any() else None
     if kind == FREE:
         return raised, mass, "base on a platform (hydro_K + mooring_K; its inertia and hydro_M), free in all directions"
@@ -144,13 +144,13 @@ def _raised(matrix: Array, below: float) -> Array:
     return np.ascontiguousarray(transformed(in_axes(matrix, BEAMDYN), sp.pose(np.eye(3), np.array([-below, 0.0, 0.0]))))
 
 
-def _platform(main: Text, named: Named, draft: float) -> Array:
+def _platform(main: Text, entries: Entries, draft: float) -> Array:
     """(6, 6) inertia of the platform at the base, from its moments about its mass centre."""
-    mass = value(main, named, "mass_pform") if "mass_pform" in named else 0.0
+    mass = value(main, entries, "mass_pform") if "mass_pform" in entries else 0.0
     own = np.zeros((6, 6))
     own[:3, :3] = mass * np.eye(3)
     own[3:, 3:] = _matrix(main, "i_matrix_pform", 3)
-    return _raised(own, value(main, named, "cm_pform") - draft if mass else 0.0)
+    return _raised(own, value(main, entries, "cm_pform") - draft if mass else 0.0)
 
 
 def _symmetric(main: Text, name: str, matrix: Array) -> Array:
@@ -160,9 +160,11 @@ def _symmetric(main: Text, name: str, matrix: Array) -> Array:
         CaseError: they differ by more than ``ASYMMETRY``.
     """
     size = np.sqrt(np.abs(np.diagonal(matrix)))
-    apart = np.abs(matrix - matrix.T).max()
+    difference = np.abs(matrix - matrix.T).max()
     if (np.abs(matrix - matrix.T) > ASYMMETRY * np.outer(size, size)).any():
-        raise CaseError(f"{main.path}: {name}: entries differ by {apart:g} from those across the diagonal; correct one")
+        raise CaseError(
+            f"{main.path}: {name}: entries differ by {difference:g} from those across the diagonal; correct one"
+        )
     return 0.5 * (matrix + matrix.T)
 
 
@@ -177,13 +179,15 @@ def _matrix(main: Text, name: str, size: int = 6) -> Array:
     return np.array(rows)
 
 
-def _wires(main: Text, named: Named, height: float) -> tuple[tuple[float, Array], ...]:
+def _wires(main: Text, entries: Entries, height: float) -> tuple[tuple[float, Array], ...]:
     """Heights and horizontal stiffness of guy wires."""
-    if "n_attachments" not in named or value(main, named, "n_attachments") == 0:
+    if "n_attachments" not in entries or value(main, entries, "n_attachments") == 0:
         return ()
-    count = whole(main, named, "n_attachments")
-    columns = [_row(main, named, name, count) for name in ("n_wires", "node_attach", "wire_stfness", "th_wire")]
-    nodes = [number for line in main.lines[named["nselt"][0] + 1 : named["nselt"][0] + 4] for number in leading(line)]
+    count = integer(main, entries, "n_attachments")
+    columns = [_row(main, entries, name, count) for name in ("n_wires", "node_attach", "wire_stfness", "th_wire")]
+    nodes = [
+        number for line in main.lines[entries["nselt"][0] + 1 : entries["nselt"][0] + 4] for number in leading(line)
+    ]
     out = []
     for n, node, k, angle in zip(*columns, strict=True):
         if not 1 < node <= len(nodes):
@@ -193,7 +197,7 @@ def _wires(main: Text, named: Named, height: float) -> tuple[tuple[float, Array]
     return tuple(out)
 
 
-def _row(main: Text, named: Named, name: str, count: int) -> list[float]:
+def _row(main: Text, entries: Entries, name: str, count: int) -> list[float]:
     """The first ``count`` numbers of the line that ends in a name."""
     k = next((k for k, line in enumerate(main.lines) if f"{name}:" in line or f" {name} " in line), None)
     numbers = leading(main.lines[k]) if k is not None else []
@@ -202,19 +206,19 @@ def _row(main: Text, named: Named, name: str, count: int) -> list[float]:
     return numbers[:count]
 
 
-def _soil(main: Text, named: Named, height: float) -> Array | None:
+def _soil(main: Text, entries: Entries, height: float) -> Array | None:
     """Distributed stiffness: heights above the base, and N/m²."""
-    if "n_secs_k_distr" not in named or value(main, named, "n_secs_k_distr") == 0:
+    if "n_secs_k_distr" not in entries or value(main, entries, "n_secs_k_distr") == 0:
         return None
-    count = whole(main, named, "n_secs_k_distr")
-    columns = [_row(main, named, name, count) for name in ("z_distr_k", "distr_k")]
+    count = integer(main, entries, "n_secs_k_distr")
+    columns = [_row(main, entries, name, count) for name in ("z_distr_k", "distr_k")]
     if max(columns[0]) > height:
         raise CaseError(f"{main.path}: z_distr_k: up to {max(columns[0]):g} m: the tower is {height:g} m high")
     return np.array(columns).T
 
 
-def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
-    if "n_secs_m_distr" not in named:
+def _unused(main: Text, entries: Entries) -> tuple[Unused, ...]:
+    if "n_secs_m_distr" not in entries:
         return ()
     why = "added mass along the tower is not included"
-    return unused("distr_m", [value(main, named, "n_secs_m_distr")], "sections", main.path, why)
+    return unused("distr_m", [value(main, entries, "n_secs_m_distr")], "sections", main.path, why)

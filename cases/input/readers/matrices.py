@@ -22,9 +22,9 @@ HAWC2 = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 
 def in_axes(matrix: Array, axes: Array) -> Array:
     """Transform matrices (…, 6, 6) to our axes; ``axes`` (…, 3, 3) is the rotation from the original axes to ours."""
-    turn = np.zeros((*axes.shape[:-2], 6, 6))
-    turn[..., :3, :3] = turn[..., 3:, 3:] = axes
-    return turn @ matrix @ np.swapaxes(turn, -1, -2)
+    rotation = np.zeros((*axes.shape[:-2], 6, 6))
+    rotation[..., :3, :3] = rotation[..., 3:, 3:] = axes
+    return rotation @ matrix @ np.swapaxes(rotation, -1, -2)
 
 
 def rotated(matrix: Array, angle: ArrayLike) -> Array:
@@ -84,18 +84,18 @@ def fault(matrix: Array) -> str | None:
             f"entries ({i + 1}, {j + 1}) and ({j + 1}, {i + 1}) are {matrix[i, j]:g} and {matrix[j, i]:g}: "
             "it must be symmetric: make both entries equal"
         )
-    least = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
-    if least <= 0:
-        return f"not positive definite (least scaled eigenvalue {least:.2g}): check the couplings"
+    smallest = np.linalg.eigvalsh((scaled + scaled.T) / 2)[0]
+    if smallest <= 0:
+        return f"not positive definite (least scaled eigenvalue {smallest:.2g}): check the couplings"
     return None
 
 
 def mass_fault(matrix: Array) -> str | None:
     """The fault of a section's mass (6, 6): as ``fault``, but moments of inertia may be zero."""
     d = np.diag(matrix)
-    bad = np.where(np.arange(6) < 3, d <= 0, d < 0)
-    if bad.any():
-        i = int(np.argmax(bad))
+    nonpositive = np.where(np.arange(6) < 3, d <= 0, d < 0)
+    if nonpositive.any():
+        i = int(np.argmax(nonpositive))
         return f"diagonal entry {i + 1} is {d[i]:g}: it must be positive: check its sign and the order of the rows"
     scale = np.sqrt(np.outer(d, d)) + max(1e-9 * d[0], np.finfo(float).tiny)
     i, j = np.unravel_index((np.abs(matrix - matrix.T) / scale).argmax(), (6, 6))

@@ -31,8 +31,8 @@ MARKS: tuple[tuple[Callable[[Text], bool], str], ...] = (
 
 def description(text: Text) -> str | None:
     """What a file is that contains no blade, and the remedy; None if it is unknown."""
-    for matches, what in MARKS:
+    for matches, explanation in MARKS:
         if matches(text):
-            return what
+            return explanation
     module = next((match[1] for line in text.lines[:3] if (match := OPENFAST.match(line))), None)
     return MODULE_FILE.format(module) if module else None

@@ -11,7 +11,7 @@ from typing import Annotated, Any, Literal
 
 import numpy as np
 from msgspec import Meta, Struct
-from msgspec.structs import replace as changed
+from msgspec.structs import replace as replace_struct
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError
@@ -152,10 +152,12 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
             CaseError: if the data are invalid.
         """
         n = len(self.s)
-        for what in ("stiffness", "mass", "twist_deg", "curve"):
-            given = getattr(self, what)
-            if given is not None and len(given) != n:
-                raise CaseError(f"blade.{what}: {len(given)} entries for {n} stations in blade.s: give one per station")
+        for quantity in ("stiffness", "mass", "twist_deg", "curve"):
+            values = getattr(self, quantity)
+            if values is not None and len(values) != n:
+                raise CaseError(
+                    f"blade.{quantity}: {len(values)} entries for {n} stations in blade.s: give one per station"
+                )
         stiffness = symmetric(np.array(self.stiffness))
         for i in (STRAINS.index(r) for r in self.rigid):
             if stiffness[:, i, :].any():
@@ -233,8 +235,8 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
             multipliers=self.multipliers,
             offsets=self.offsets,
         )
-        named = os.environ.get(self.files) if self.files else None
-        with files.reading_also(Path(named)) if named else nullcontext():
+        folder_name = os.environ.get(self.files) if self.files else None
+        with files.reading_also(Path(folder_name)) if folder_name else nullcontext():
             path = self._path(name, folder)
             blade_reading = reading(path, mount)
         return BladeFile(path, blade_reading.blade, blade_reading.source, mount), blade_reading.unstated
@@ -246,10 +248,10 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
     def _path(self, name: str, folder: Path) -> Path:
         if self.files is None:
             return folder / self.file
-        named = os.environ.get(self.files)
-        if named and os.path.isfile(path := Path(named) / self.file):
+        folder_name = os.environ.get(self.files)
+        if folder_name and os.path.isfile(path := Path(folder_name) / self.file):
             return path
-        cause = f"not in {self.files}={named}" if named else f"{self.files} is not set"
+        cause = f"not in {self.files}={folder_name}" if folder_name else f"{self.files} is not set"
         raise FilesMissingError(
             f"{name}: file: {self.file}: {cause}: set it to a folder with this file, which does not come with Southwell"
         )
@@ -279,7 +281,7 @@ def describe(blade: Blade) -> Sections:
     finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
     clamped = np.isinf(blade.root)
     names = ("x", "y", "z", "torsion", "flap", "lag")
-    loose = Springs(**{n: float(k) for n, k, h in zip(names, blade.root, clamped, strict=True) if not h})
+    springs = Springs(**{n: float(k) for n, k, h in zip(names, blade.root, clamped, strict=True) if not h})
     out = Sections(
         s=blade.stations.tolist(),
         stiffness=finite[:, UPPER[0], UPPER[1]].tolist(),
@@ -292,8 +294,8 @@ def describe(blade: Blade) -> Sections:
         precone_deg=float(np.degrees(blade.precone)),
         pitch_deg=float(np.degrees(blade.pitch)),
     )
-    out = out if clamped.all() else changed(out, root=loose)
-    return changed(out, tip_mass=_body(blade.tip_mass)) if blade.tip_mass.any() else out
+    out = out if clamped.all() else replace_struct(out, root=springs)
+    return replace_struct(out, tip_mass=_body(blade.tip_mass)) if blade.tip_mass.any() else out
 
 
 def _body(matrix: Array) -> TipMass:

@@ -52,8 +52,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if path.suffix.lower() == ".csv":
         if mount.length is None:
             raise CaseError(f"{path}: length: stations are fractions of it: give --length and --hub-radius")
-        described = Stations(file=path.name, length=mount.length)
-        blade = described.blade(path.stem, path.parent)
+        stations = Stations(file=path.name, length=mount.length)
+        blade = stations.blade(path.stem, path.parent)
         source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight", *_rigid(blade)))
         return Reading(_mounted(blade, mount), source)
     data = document(path)
@@ -79,8 +79,8 @@ def _rigid(blade: Blade) -> tuple[str, ...]:
 
 
 def _mounted(blade: Blade, mount: Mount) -> Blade:
-    given = {n: getattr(mount, n) for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is not None}
-    return replace(blade, **given)
+    values = {n: getattr(mount, n) for n in ("hub_radius", "precone", "pitch") if getattr(mount, n) is not None}
+    return replace(blade, **values)
 
 
 def write(blade: Blade, path: Path) -> None:

@@ -91,10 +91,10 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
         raise CaseError(f"{text.at(k)}: the file ends here, before {columns[0]}: give the whole file")
     numbers, words = leading(text.lines[k]), tokens(text.lines[k])
     if len(numbers) != len(columns):
-        rest = words[len(numbers) :]
+        remaining_words = words[len(numbers) :]
         cause = (
-            f"{rest[0]!r} is not a number:"
-            if rest and len(numbers) < len(columns)
+            f"{remaining_words[0]!r} is not a number:"
+            if remaining_words and len(numbers) < len(columns)
             else "check for commas in place of decimal points;"
             if len(numbers) == 2 * len(columns)
             else "check for a missing or an additional column;"
@@ -103,11 +103,11 @@ def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
             f"{text.at(k)}: {len(numbers)} numbers instead of {len(columns)} ({', '.join(columns[:6])}"
             f"{', …' if len(columns) > 6 else ''}): {cause} correct the line"
         )
-    for name, value, written in zip(columns, numbers, words, strict=False):
+    for name, value, word in zip(columns, numbers, words, strict=False):
         if not math.isfinite(value):
-            raise CaseError(f"{text.at(k)}: {name}: {written}: not a finite number: fill gaps in the data")
+            raise CaseError(f"{text.at(k)}: {name}: {word}: not a finite number: fill gaps in the data")
         if not believable(value):
-            raise CaseError(f"{text.at(k)}: {name}: {written}: implausibly large; check the exponent")
+            raise CaseError(f"{text.at(k)}: {name}: {word}: implausibly large; check the exponent")
     return numbers
 
 
@@ -144,8 +144,8 @@ class Table:
             CaseError: naming the first such value.
         """
         for name in names:
-            good = self[name] >= 0 if zero else self[name] > 0
-            self.need(good, name, self[name], "it must be positive: check its sign and column")
+            valid = self[name] >= 0 if zero else self[name] > 0
+            self.need(valid, name, self[name], "it must be positive: check its sign and column")
 
 
 def table(text: Text, first: int, count: int, columns: Sequence[str]) -> Table:
@@ -202,47 +202,48 @@ def keys(text: Text) -> dict[str, tuple[int, str]]:
     return out
 
 
-def value(text: Text, named: dict[str, tuple[int, str]], *names: str) -> float:
+def value(text: Text, entries: dict[str, tuple[int, str]], *names: str) -> float:
     """The number under the first of ``names`` that is present.
 
     Raises:
         CaseError: if none is present, or the value is not a finite number.
     """
-    k, token = named[_name(text, named, names)]
+    k, token = entries[_name(text, entries, names)]
     out = number(token)
     if out is None or not believable(out):
         raise CaseError(f"{text.at(k)}: {names[0]}: {token!r} is not a finite number: correct it")
     return out
 
 
-def whole(text: Text, named: dict[str, tuple[int, str]], name: str) -> int:
+def integer(text: Text, entries: dict[str, tuple[int, str]], name: str) -> int:
     """The count under ``name``, at least 1.
 
     Raises:
         CaseError: as ``value``, and if it is not an integer.
     """
-    out = value(text, named, name)
+    out = value(text, entries, name)
     if out != int(out) or out < 1:
-        raise CaseError(f"{text.at(named[name.lower()][0])}: {name}: {out:g}: it is a count; give a whole number")
+        raise CaseError(f"{text.at(entries[name.lower()][0])}: {name}: {out:g}: it is a count; give a whole number")
     return int(out)
 
 
-def word(text: Text, named: dict[str, tuple[int, str]], *names: str) -> str:
+def word(text: Text, entries: dict[str, tuple[int, str]], *names: str) -> str:
     """The word under the first of ``names`` that is present, without quotes.
 
     Raises:
         CaseError: if none is present.
     """
-    return named[_name(text, named, names)][1]
+    return entries[_name(text, entries, names)][1]
 
 
-def _name(text: Text, named: dict[str, tuple[int, str]], names: Iterable[str]) -> str:
+def _name(text: Text, entries: dict[str, tuple[int, str]], names: Iterable[str]) -> str:
     names = tuple(names)
     for name in names:
-        if name.lower() in named:
+        if name.lower() in entries:
             return name.lower()
-    near = get_close_matches(names[0].lower(), named, 1, cutoff=0.75)
-    cause = f"{near[0]!r} at line {named[near[0]][0] + 1} may be meant for it;" if near else "give the whole file, or"
+    matches = get_close_matches(names[0].lower(), entries, 1, cutoff=0.75)
+    match = matches[0] if matches else ""
+    cause = f"{match!r} at line {entries[match][0] + 1} may be meant for it;" if match else "give the whole file, or"
     raise CaseError(
         f"{text.path}: {names[0]}: missing: {cause} add it, the value before its name (`1.0 {names[0]} - …`)"
     )

@@ -74,18 +74,18 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     top = fields(load(path))
     layout = _layout(top)
     mounted = complete(mount or Mount(), _hub(top, layout))
-    eta, stiffness, mass, loose = (_lists if layout.version == 2 else _rows)(layout.elastic)
+    eta, stiffness, mass, zero_strains = (_lists if layout.version == 2 else _rows)(layout.elastic)
     name = top.find("name")
-    called = name.word() if name else path.stem
-    blade = beamdyn.assemble(called, path, _axis(layout), eta, stiffness, mass, mounted)
-    blade = replace(blade, stiffness=rigid(blade.stiffness, *loose), tip_mass=_tip(layout.elastic))
+    blade_name = name.word() if name else path.stem
+    blade = beamdyn.assemble(blade_name, path, _axis(layout), eta, stiffness, mass, mounted)
+    blade = replace(blade, stiffness=rigid(blade.stiffness, *zero_strains), tip_mass=_tip(layout.elastic))
     notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
     if mounted.unstated:
         notes.append(f"{', '.join(mounted.unstated)} taken as 0")
     if layout.version == 1 and layout.degrees == 1.0:
         notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
-    if loose:
-        keys = ", ".join(key for key, i in STRAINS.items() if i in loose)
+    if zero_strains:
+        keys = ", ".join(key for key, i in STRAINS.items() if i in zero_strains)
         notes.append(f"{keys} zero or not given: those strains are rigid")
     axes = f"{OPENFAST_AXES}; matrices about the reference axis, where they stay"
     mu = layout.elastic.find("structural_damping", "mu") if layout.elastic.find("structural_damping") else None
@@ -184,9 +184,9 @@ def _rows(elastic: Field) -> SectionLists:
         field = rows.get("values")
         matrices.append(_full(_paired(field.rows(21), field, rows)))
     at = elastic.get("stiff_matrix", "values")
-    stiffness, loose = _loose(matrices[0], at)
+    stiffness, zero_strains = _loose(matrices[0], at)
     mass = _checked(matrices[1], mass_fault, elastic.get("inertia_matrix", "values"))
-    return *_together(grids, [_checked(stiffness, fault, at), mass]), loose
+    return *_together(grids, [_checked(stiffness, fault, at), mass]), zero_strains
 
 
 def _lists(elastic: Field) -> SectionLists:
@@ -200,12 +200,12 @@ def _lists(elastic: Field) -> SectionLists:
             entries[:, k] = _paired(field.numbers(), field, matrix)
         elif key[1] == key[2] and key not in STRAINS:
             raise CaseError(f"{matrix.at}: no {key}: a blade must resist bending; add it")
-    stiffness, loose = _loose(_full(entries), matrix)
+    stiffness, zero_strains = _loose(_full(entries), matrix)
     stiffness = _checked(stiffness, fault, matrix.get("grid"))
     inertia = elastic.get("inertia_matrix")
     grids.append(_grid(inertia))
     mass = _checked(_mass(inertia), mass_fault, inertia.get("mass"))
-    return *_together(grids, [stiffness, mass]), loose
+    return *_together(grids, [stiffness, mass]), zero_strains
 
 
 def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
@@ -214,7 +214,7 @@ def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
     Raises:
         CaseError: if such a strain is coupled with others.
     """
-    loose = []
+    zero_strains = []
     for key, strain in STRAINS.items():
         i = int(key[1]) - 1
         if stiffness[:, i, i].any():
@@ -222,8 +222,8 @@ def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
         if stiffness[:, i].any():
             raise CaseError(f"{field.at}: {key} is not given but couplings with it are: add it")
         stiffness[:, i, i] = 1.0
-        loose.append(strain)
-    return stiffness, tuple(loose)
+        zero_strains.append(strain)
+    return stiffness, tuple(zero_strains)
 
 
 def _mass(inertia: Field) -> Array:
@@ -251,10 +251,10 @@ def _full(upper: Array) -> Array:
     return out
 
 
-def _checked(matrices: Array, wrong: Callable[[Array], str | None], field: Field) -> Array:
+def _checked(matrices: Array, fault_of: Callable[[Array], str | None], field: Field) -> Array:
     for k, matrix in enumerate(matrices):
-        if said := wrong(matrix):
-            raise CaseError(f"{field.item(k)}: at station {k + 1}: {said}")
+        if message := fault_of(matrix):
+            raise CaseError(f"{field.item(k)}: at station {k + 1}: {message}")
     return matrices
 
 

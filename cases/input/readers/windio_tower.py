@@ -51,23 +51,23 @@ def read(path: Path) -> tuple[Tower, Source]:
     points = np.unique(np.concatenate(grids))
     eta = np.unique(np.concatenate([np.linspace(a, b, PARTS + 1) for a, b in pairwise(points)]))
     materials = {part.get("name").word(): part for part in top.get("materials").parts()}
-    outer = 0.5 * _at(diameter, eta)
+    outer_radius = 0.5 * _at(diameter, eta)
     EI, EA, GJ, mass, rotary = (np.zeros(len(eta)) for _ in range(5))
     for layer in layers:
         name = layer.get("material").word()
         if name not in materials:
             raise CaseError(f"{layer.get('material').at}: {name}: not in materials; add it")
         E, G, rho = _material(materials[name])
-        inner = outer - _at(layer.get("thickness"), eta)
-        if (inner < 0).any():
+        inner_radius = outer_radius - _at(layer.get("thickness"), eta)
+        if (inner_radius < 0).any():
             raise CaseError(f"{layer.at}: thickness: more than the radius; check the unit, m")
-        area, second = np.pi * (outer**2 - inner**2), 0.25 * np.pi * (outer**4 - inner**4)
+        area, second = np.pi * (outer_radius**2 - inner_radius**2), 0.25 * np.pi * (outer_radius**4 - inner_radius**4)
         EA += E * area
         EI += E * second
         GJ += 2.0 * G * second
         mass += rho * area
         rotary += rho * second
-        outer = inner
+        outer_radius = inner_radius
     factor_field = structure.find("outfitting_factor")
     factor = factor_field.number() if factor_field else 1.0
     try:

@@ -39,13 +39,13 @@ class Field:
         Raises:
             CaseError: if a node on the path is not a mapping.
         """
-        here = self
+        current = self
         for key in path:
-            node = here._keys().get(key)
+            node = current._keys().get(key)
             if node is None:
                 return None
-            here = Field(self.text, f"{here.name}.{key}".lstrip("."), node)
-        return here
+            current = Field(self.text, f"{current.name}.{key}".lstrip("."), node)
+        return current
 
     def get(self, *path: str) -> "Field":
         """The field under these keys.
@@ -53,13 +53,13 @@ class Field:
         Raises:
             CaseError: naming the first missing key.
         """
-        here = self
+        current = self
         for key in path:
-            field = here.find(key)
+            field = current.find(key)
             if field is None:
-                raise CaseError(f"{here.at}: no key {key}: {nearest(key, here._keys())}; add it")
-            here = field
-        return here
+                raise CaseError(f"{current.at}: no key {key}: {nearest(key, current._keys())}; add it")
+            current = field
+        return current
 
     def number(self) -> float:
         """A finite number.
@@ -131,13 +131,13 @@ def fields(text: Text) -> Field:
     Raises:
         CaseError: if it is not YAML.
     """
-    whole = "\n".join(text.lines)
+    content = "\n".join(text.lines)
     try:
-        _bounded(text, whole)
+        _bounded(text, content)
         try:
-            node = yaml.compose(whole, Loader=LOADER)
+            node = yaml.compose(content, Loader=LOADER)
         except ComposerError:
-            node = yaml.compose(whole, Loader=_Reusing)
+            node = yaml.compose(content, Loader=_Reusing)
     except yaml.MarkedYAMLError as error:
         line = f": line {error.problem_mark.line + 1}" if error.problem_mark else ""
         raise CaseError(f"{text.path}{line}: not YAML: {error.problem}: correct it") from error
@@ -150,7 +150,7 @@ def fields(text: Text) -> Field:
     return Field(text, "", cast(yaml.Node, node))
 
 
-def _bounded(text: Text, whole: str) -> None:
+def _bounded(text: Text, content: str) -> None:
     """Reject files that would crash libyaml's recursive composer or exhaust memory.
 
     Raises:
@@ -158,12 +158,12 @@ def _bounded(text: Text, whole: str) -> None:
         yaml.YAMLError: if the file is not YAML.
     """
     depth = 0
-    for count, event in enumerate(yaml.parse(whole, Loader=LOADER)):
+    for count, event in enumerate(yaml.parse(content, Loader=LOADER)):
         opens = isinstance(event, (yaml.SequenceStartEvent, yaml.MappingStartEvent))
         depth += opens - isinstance(event, (yaml.SequenceEndEvent, yaml.MappingEndEvent))
         if depth > DEEPEST or count > MOST_NODES:
-            what = f"{DEEPEST} lists or keys within each other" if depth > DEEPEST else f"{MOST_NODES} values"
-            raise CaseError(f"{text.at(event.start_mark.line)}: more than {what}: check that it is the right file")
+            excess = f"{DEEPEST} lists or keys within each other" if depth > DEEPEST else f"{MOST_NODES} values"
+            raise CaseError(f"{text.at(event.start_mark.line)}: more than {excess}: check that it is the right file")
 
 
 class _Reusing(yaml.SafeLoader):
@@ -177,10 +177,10 @@ class _Reusing(yaml.SafeLoader):
 
 
 def _number(text: Text, node: yaml.Node, name: str) -> float:
-    said = node.value if isinstance(node, yaml.ScalarNode) else "a list or keys"
-    value = number(said)
+    scalar = node.value if isinstance(node, yaml.ScalarNode) else "a list or keys"
+    value = number(scalar)
     if value is None or not believable(value):
-        raise CaseError(f"{_at(text, node, name)}: {said!r} is not a finite number: fill gaps in the data")
+        raise CaseError(f"{_at(text, node, name)}: {scalar!r} is not a finite number: fill gaps in the data")
     return value
 
 

@@ -10,7 +10,7 @@ import scipy.sparse as ss
 from southwell.core.condense import condensation, exported, ties
 from southwell.core.condense.exported import Exported, MatrixFileError
 from southwell.core.condense.matrix_files import read_matrix, stored
-from southwell.core.condense.matrix_words import real, reals, wholes
+from southwell.core.condense.matrix_words import integers, real, reals
 from southwell.core.condense.segments import between
 from southwell.core.condense.ties import FiniteElements
 from southwell.tests.support.solids import at
@@ -249,10 +249,10 @@ def test_many_words_at_once_are_read_as_one_alone() -> None:
         reals("x", [1, 2, 3, 4], plain).tolist() == [real("x", 1, word) for word in plain] == [1.0, -2.5, 0.0005, 7.0]
     )
     assert reals("x", [*range(7)], plain + odd).tolist() == [1.0, -2.5, 0.0005, 7.0, 1500.0, 1500.0, 0.2]
-    assert wholes("x", [1, 2, 3], ["1", "-2", "+30"]).tolist() == [1, -2, 30]
+    assert integers("x", [1, 2, 3], ["1", "-2", "+30"]).tolist() == [1, -2, 30]
     for wrong in ("1e31", "1e999", "nan", "1_0", "e5", "1e", "--1", ""):
         with pytest.raises(MatrixFileError, match="x, line 8: "):
             reals("x", [7, 8], ["1.0", wrong])
     for wrong in ("2147483648", "99999999999999999999999", "1.0", "1_0", "1-2", ""):
         with pytest.raises(MatrixFileError, match="x, line 8: "):
-            wholes("x", [7, 8], ["1", wrong])
+            integers("x", [7, 8], ["1", wrong])

@@ -63,30 +63,30 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: naming the file and line at fault.
     """
     mount = mount or Mount()
-    columns, body, stated, files = contents(path, mount)
+    columns, body, file_mount, files = contents(path, mount)
     r = columns["r"]
     notes = []
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     stiffness, mass = stiffness_of(columns), mass_of(columns)
     if body is not None:
-        stations, curve, twist, at, (bent, swung) = bodies.half_chords(body, r)
+        stations, curve, twist, at, (deviation, angle) = bodies.half_chords(body, r)
         stiffness, mass = between(r, stiffness, at), between(r, mass, at)
         notes.append(
             f"stations: {len(r)} of the structural file and {len(at) - len(r)} more of c2_def; between them curve and twist "
-            f"stray from its Akima splines by up to {bent:.1g} m and {np.degrees(swung):.1g}°"
+            f"stray from its Akima splines by up to {deviation:.1g} m and {np.degrees(angle):.1g}°"
         )
         notes.append(
             "section planes are perpendicular to the half-chord line, rotated from the blade axes by the smallest angle"
         )
     else:
         notes.append("no htc file: the half-chord line is straight and untwisted; only `pitch` rotates the sections")
-    mounted = complete(mount, stated)
+    mounted = complete(mount, file_mount)
     for htc in files[1:]:
-        whole = of_file(load(htc))
-        notes.append(f"not the whole turbine: {whole}" if isinstance(whole, str) else ALONE)
-    if stated is not None:
-        angles = ", ".join(f"{name} {np.degrees(getattr(stated, name)):.6g}°" for name in ("precone", "pitch"))
-        notes.append(f"orientation of the htc's bodies: hub_radius {stated.hub_radius:.6g} m, {angles}")
+        turbine = of_file(load(htc))
+        notes.append(f"not the whole turbine: {turbine}" if isinstance(turbine, str) else ALONE)
+    if file_mount is not None:
+        angles = ", ".join(f"{name} {np.degrees(getattr(file_mount, name)):.6g}°" for name in ("precone", "pitch"))
+        notes.append(f"orientation of the htc's bodies: hub_radius {file_mount.hub_radius:.6g} m, {angles}")
     unstated = mounted.unstated
     if unstated:
         notes.append(f"{', '.join(unstated)} taken as 0: in HAWC2 the orientation of the bodies defines them")
@@ -117,7 +117,7 @@ class Contents(NamedTuple):
 
     columns: Table
     body: bodies.Body | None
-    stated: Mount | None
+    file_mount: Mount | None
     files: tuple[Path, ...]
 
 
@@ -127,7 +127,7 @@ def contents(path: Path, mount: Mount) -> Contents:
     Raises:
         CaseError: naming the file and line at fault.
     """
-    text, htc, subset, body, stated = load(path), None, mount.subset, None, None
+    text, htc, subset, body, file_mount = load(path), None, mount.subset, None, None
     if is_htc(text):
         htc, text = text, None
     elif mount.main is not None:
@@ -135,7 +135,7 @@ def contents(path: Path, mount: Mount) -> Contents:
     if htc is not None:
         commands = bodies.commands(htc)
         body = bodies.blade_body(htc, commands)
-        stated = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
+        file_mount = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
         file, stated_subset = bodies.properties(htc, body)
         subset = subset or stated_subset
         text = text or load(file)
@@ -148,7 +148,7 @@ def contents(path: Path, mount: Mount) -> Contents:
     )
     rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
     columns.need(rises, "r", r, "not beyond the station before it: sort them and drop duplicates")
-    return Contents(columns, body, stated, (text.path, *([htc.path] if htc else [])))
+    return Contents(columns, body, file_mount, (text.path, *([htc.path] if htc else [])))
 
 
 def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, Array]:
@@ -203,8 +203,8 @@ def stiffness_of(p: Table) -> Array:
         full[:, UPPER[0], UPPER[1]] = np.stack([p[name] for name in FULL[-21:]], axis=1)
         full += np.triu(full, 1).swapaxes(1, 2)
         for k, matrix in enumerate(full):
-            if wrong := fault(matrix):
-                raise CaseError(f"{p.text.at(p.lines[k])}: stiffness: {wrong}")
+            if message := fault(matrix):
+                raise CaseError(f"{p.text.at(p.lines[k])}: stiffness: {message}")
         return about(rotated(in_axes(full, HAWC2), angle), p["x_e"], p["y_e"])
     bend = rotated(bending(p["E"] * p["A"], p["E"] * p["I_x"], p["E"] * p["I_y"]), angle)
     ga = p["G"] * p["A"]
@@ -222,9 +222,9 @@ def mass_of(p: Table) -> Array:
     rotary[:, 5, 5] -= m * y**2
     rotary[:, 4, 5] += m * y * z
     rotary[:, 5, 4] += m * y * z
-    least = np.linalg.eigvalsh(rotary[:, 4:, 4:])[:, 0]
+    smallest = np.linalg.eigvalsh(rotary[:, 4:, 4:])[:, 0]
     remedy = "less than the mass centre's distance from the elastic centre, about which it must be given"
-    p.need(least >= -1e-9 * np.abs(rotary[:, 4:, 4:]).max(), "ri_x, ri_y", p["ri_y"], remedy)
+    p.need(smallest >= -1e-9 * np.abs(rotary[:, 4:, 4:]).max(), "ri_x, ri_y", p["ri_y"], remedy)
     rotary[:, 3, 3] = rotary[:, 4, 4] + rotary[:, 5, 5]
     rotary[:, range(3), range(3)] = m[:, None]
     return about(rotary, p["x_cg"], p["y_cg"])

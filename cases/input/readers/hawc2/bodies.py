@@ -117,10 +117,10 @@ def main_bodies(commands: Body) -> dict[str, Body]:
         if low == ["begin", "main_body"]:
             body = []
         elif low == ["end", "main_body"] and body is not None:
-            named = {c.words[0]: c.words[1].lower() for c in body if len(c.words) > 1}
-            original = out.get(named.get("copy_main_body", ""))
-            if "name" in named:
-                out.setdefault(named["name"], original or body)
+            values = {c.words[0]: c.words[1].lower() for c in body if len(c.words) > 1}
+            original = out.get(values.get("copy_main_body", ""))
+            if "name" in values:
+                out.setdefault(values["name"], original or body)
             body = None
         elif body is not None:
             body.append(command)
@@ -133,16 +133,16 @@ def properties(htc: Text, body: Body) -> tuple[Path, tuple[int, int] | None]:
     Raises:
         CaseError: if the body references none, or the file does not exist.
     """
-    named = {c.words[0]: c for c in body}
-    if "filename" not in named or len(named["filename"].words) < 2:
+    by_keyword = {c.words[0]: c for c in body}
+    if "filename" not in by_keyword or len(by_keyword["filename"].words) < 2:
         raise CaseError(f"{htc.path}: timoschenko_input: no filename in the main_body: add it")
-    file, chosen = named["filename"], named.get("set")
-    numbers = [number(w) for w in chosen.words[1:]] if chosen else []
-    if chosen and (len(numbers) != 2 or not all(n and n.is_integer() for n in numbers)):
+    file, subset_command = by_keyword["filename"], by_keyword.get("set")
+    numbers = [number(w) for w in subset_command.words[1:]] if subset_command else []
+    if subset_command and (len(numbers) != 2 or not all(n and n.is_integer() for n in numbers)):
         raise CaseError(
-            f"{chosen.at}: set: {' '.join(chosen.words[1:])}: not set and subset, as in `set 1 1`: correct it"
+            f"{subset_command.at}: set: {' '.join(subset_command.words[1:])}: not set and subset, as in `set 1 1`: correct it"
         )
-    subset = (int(numbers[0] or 1), int(numbers[1] or 1)) if chosen else None
+    subset = (int(numbers[0] or 1), int(numbers[1] or 1)) if subset_command else None
     return _near(htc.path, file), subset
 
 
@@ -215,14 +215,14 @@ def half_chords(body: Body, r: Array) -> HalfChords:
         )
     s = r * (arc[-1] / r[-1])
     own = np.interp(c2[:, 2], z, arc)
-    apart = np.abs(own[:, None] - s).min(axis=1)
-    s = np.union1d(s, own[apart > MIN_SPACING * arc[-1]])
+    distance = np.abs(own[:, None] - s).min(axis=1)
+    s = np.union1d(s, own[distance > MIN_SPACING * arc[-1]])
     at = spline(np.interp(s, arc, z))
     curve, twist = at[:, [2, 0, 1]], np.radians(at[:, 3])
     fine = spline(z)
-    bent = np.linalg.norm(CubicSpline(s, curve)(arc) - fine[:, [2, 0, 1]], axis=1).max()
-    swung = np.abs(np.interp(arc, s, twist) - np.radians(fine[:, 3])).max()
-    return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(bent), float(swung)))
+    deviation = np.linalg.norm(CubicSpline(s, curve)(arc) - fine[:, [2, 0, 1]], axis=1).max()
+    angle = np.abs(np.interp(arc, s, twist) - np.radians(fine[:, 3])).max()
+    return HalfChords(s, curve, twist, s * (r[-1] / arc[-1]), (float(deviation), float(angle)))
 
 
 def section(command: Command) -> list[float]:
@@ -264,11 +264,13 @@ def _commands(text: Text, main: Path, depth: int, lengths: list[int]) -> Iterato
 
 def _near(main: Path, command: Command) -> Path:
     """Path of the file that a command of an htc references."""
-    what, *names = command.words
+    keyword, *names = command.words
     if not names:
-        raise CaseError(f"{command.at}: {what}: no name: add it")
-    given = Path(names[0].replace("\\", "/"))
-    for folder, name in ((main.parent, given), (main.parent.parent, given), (main.parent, Path(given.name))):
+        raise CaseError(f"{command.at}: {keyword}: no name: add it")
+    path = Path(names[0].replace("\\", "/"))
+    for folder, name in ((main.parent, path), (main.parent.parent, path), (main.parent, Path(path.name))):
         if os.path.isfile(folder / name):
             return folder / name
-    raise CaseError(f"{command.at}: {what}: {names[0]}: not found from the htc's folder or the one above: put it there")
+    raise CaseError(
+        f"{command.at}: {keyword}: {names[0]}: not found from the htc's folder or the one above: put it there"
+    )

@@ -24,14 +24,14 @@ Array = NDArray[np.float64]
 
 
 def hub_and_drivetrain(
-    path: Path, split: Parts, lines: dict[str, Line], placed: Frames, beside: list[str]
+    path: Path, split: Parts, lines: dict[str, Line], body_frames: Frames, fixed_bodies: list[str]
 ) -> tuple[Array, Drivetrain, tuple[str, ...]]:
     """Inertia (6, 6) of the hub at its centre, the drivetrain, and notes on it."""
-    into = sp.inverse(placed.hub)
+    into = sp.inverse(body_frames.hub)
     hub = np.zeros((6, 6))
-    for name in (*split.rotating, *beside):
-        hub += moved(lines[name].inertia(), into @ placed.pose[name])
-    shaft, at = lines[split.shaft], into @ placed.pose[split.shaft]
+    for name in (*split.rotating, *fixed_bodies):
+        hub += moved(lines[name].inertia(), into @ body_frames.pose[name])
+    shaft, at = lines[split.shaft], into @ body_frames.pose[split.shaft]
     points = shaft.nodes @ at[:3, :3].T + at[:3, 3]
     if np.abs(points[:, :2]).max() > orientation.ALONG * shaft.length:
         raise CaseError(f"{path}: {split.shaft}: not along its axis of rotation, which is not supported")
@@ -45,11 +45,11 @@ def hub_and_drivetrain(
     generator = float(shaft.weights @ (polar * (1.0 - np.interp(shaft.arc, ends, twisted))))
     generator += float(sum((1.0 - share[m.node]) * float(moved(m.inertia, at)[5, 5]) for m in shaft.masses))
     hub[5, 5] -= generator
-    spread = hub.copy()
-    spread[[0, 1, 3, 4], [0, 1, 3, 4]] = 0.0
-    spread[[2, 5], [2, 5]] = spread[[0, 4, 1, 3], [4, 0, 3, 1]] = 0.0
+    asymmetry = hub.copy()
+    asymmetry[[0, 1, 3, 4], [0, 1, 3, 4]] = 0.0
+    asymmetry[[2, 5], [2, 5]] = asymmetry[[0, 4, 1, 3], [4, 0, 3, 1]] = 0.0
     moment = max(hub[3, 3], hub[5, 5], hub[0, 0] * shaft.length**2)
-    uneven = max(np.abs(spread).max(), abs(hub[3, 3] - hub[4, 4]))
+    uneven = max(np.abs(asymmetry).max(), abs(hub[3, 3] - hub[4, 4]))
     if uneven > EQUAL * moment:
         raise CaseError(
             f"{path}: {split.shaft}: with the hubs it is not alike in all directions around its axis ({uneven:g} of "

@@ -43,12 +43,12 @@ def with_elements(blade: Blade, path: Path, mount: Mount) -> Blade | None:
     nodes = nodes - nodes[0]
     along = np.diff(nodes, axis=0)
     ends = np.concatenate([[0.0], np.cumsum(np.linalg.norm(along, axis=1))])
-    behind = STEP * ends[-1] * (np.arange(len(along)) > 0)
+    gap = STEP * ends[-1] * (np.arange(len(along)) > 0)
     element = np.repeat(np.arange(len(along)), 2)
-    begin = nodes[:-1] + along * (behind / np.diff(ends))[:, None]
+    begin = nodes[:-1] + along * (gap / np.diff(ends))[:, None]
     return replace(
         blade,
-        stations=np.stack([ends[:-1] + behind, ends[1:]], axis=1).ravel(),
+        stations=np.stack([ends[:-1] + gap, ends[1:]], axis=1).ravel(),
         stiffness=stiffness_of(averaged)[element],
         mass=mass_of(averaged)[element],
         twist=(0.5 * (twist[1:] + twist[:-1]))[element],

@@ -54,29 +54,29 @@ def frames(path: Path, split: Parts, tower: Line, lines: dict[str, Line]) -> Fra
     Raises:
         CaseError: the tower is not vertical, the rotor's axis is not level, or the blades are mounted unequally.
     """
-    up = np.sign(tower.end[2] - tower.nodes[0, 2])
-    if np.abs(split.base @ np.array([0.0, 0.0, up]) - [0.0, 0.0, -1.0]).max() > EQUAL:
+    vertical = np.sign(tower.end[2] - tower.nodes[0, 2])
+    if np.abs(split.base @ np.array([0.0, 0.0, vertical]) - [0.0, 0.0, -1.0]).max() > EQUAL:
         raise CaseError(f"{path}: {split.tower}: not vertical, which is not supported")
     downwind = np.array([0.0, 1.0, 0.0])
-    x = np.array([0.0, 0.0, up])
+    x = np.array([0.0, 0.0, vertical])
     top = sp.pose(np.stack([x, np.cross(downwind, x), downwind], axis=-1), tower.end)
     pose = {split.tower: sp.inverse(top)}
-    ends = {split.tower: tower.end, **{name: one.end for name, one in lines.items()}}
-    for name in (*split.nacelle, *split.rotating, *split.blades, *split.beside):
+    ends = {split.tower: tower.end, **{name: body.end for name, body in lines.items()}}
+    for name in (*split.nacelle, *split.rotating, *split.blades, *split.fixed_bodies):
         _place(name, split, ends, pose)
-    turn = split.relatives[split.shaft].axis
-    if turn is None:
-        turn = _bearing(path, split, pose)
-    axis = pose[split.shaft][:3, :3] @ (turn / np.linalg.norm(turn))
+    shaft_axis = split.relatives[split.shaft].axis
+    if shaft_axis is None:
+        shaft_axis = _bearing(path, split, pose)
+    axis = pose[split.shaft][:3, :3] @ (shaft_axis / np.linalg.norm(shaft_axis))
     first = pose[split.blades[0]]
     axis = axis if axis @ first[:3, 1] >= 0 else -axis  # HAWC2's y of a blade points downwind
     level = float(np.hypot(axis[1], axis[2]))
     if level < LEVEL:
         raise CaseError(f"{path}: {split.shaft}: its axis is not level: not a turbine with a horizontal axis")
     yaw = float(np.arctan2(-axis[1], axis[2]))
-    turned = sp.pose(sp.rotation(0, np.array(-yaw)), np.zeros(3))
-    pose = {name: turned @ at for name, at in pose.items()}
-    axis = turned[:3, :3] @ axis
+    to_wind = sp.pose(sp.rotation(0, np.array(-yaw)), np.zeros(3))
+    pose = {name: to_wind @ at for name, at in pose.items()}
+    axis = to_wind[:3, :3] @ axis
     tilt = float(np.arctan2(axis[0], axis[2]))
     hub, mount, azimuths = _hub(path, split, pose, axis, tilt)
     return Frames(top, pose, yaw if abs(yaw) > EQUAL else 0.0, hub, mount, azimuths)
@@ -100,11 +100,11 @@ def _bearing(path: Path, split: Parts, pose: dict[str, Array]) -> Array:
         raise CaseError(
             f"{path}: {split.shaft}: neither ini_rotvec_d1 nor a bearing_vector gives the rotor's axis: add one"
         )
-    which, vector = joint.vector
-    if which == 2:
+    reference, vector = joint.vector
+    if reference == 2:
         return vector
     ground = sp.pose(split.base, np.zeros(3)) @ pose[split.tower]
-    frame = pose[parent] if which == 1 else sp.inverse(ground)
+    frame = pose[parent] if reference == 1 else sp.inverse(ground)
     return (sp.inverse(pose[split.shaft]) @ frame)[:3, :3] @ vector
 
 

@@ -54,8 +54,8 @@ class Relative:
 
 def relatives(commands: Sequence[Command]) -> dict[str, Relative]:
     """The ``relative`` blocks that are understood, by the name of body2."""
-    read = (_relative(block) for _, block in blocks(commands, "relative"))
-    return {block.child: block for block in read if block}
+    parsed = (_relative(block) for _, block in blocks(commands, "relative"))
+    return {block.child: block for block in parsed if block}
 
 
 def base(commands: Sequence[Command]) -> tuple[str, Array] | None:
@@ -63,15 +63,15 @@ def base(commands: Sequence[Command]) -> tuple[str, Array] | None:
     for _, block in blocks(commands, "base"):
         name, axes = "", np.eye(3)
         for command in block:
-            which, what = _which(command)
-            if (which, what) == ("", "") and len(command.words) > 1:
+            body_number, setting = _which(command)
+            if (body_number, setting) == ("", "") and len(command.words) > 1:
                 name = command.words[1].lower()
-            elif which == "" and what in TURNS:
-                turned = _turned(what, command)
-                if turned is None:
+            elif body_number == "" and setting in TURNS:
+                rotation_matrix = _turned(setting, command)
+                if rotation_matrix is None:
                     return None
-                axes = axes @ turned
-            elif which != "inipos":
+                axes = axes @ rotation_matrix
+            elif body_number != "inipos":
                 return None
         return (name, axes) if name else None
     return None
@@ -137,13 +137,13 @@ TURNS = ("eulerang", "eulerpar")
 
 def _which(command: Command) -> tuple[str, str]:
     """The number of the body of a command, and what the command sets: ``body2_eulerang`` is 2 and eulerang."""
-    which, _, what = command.words[0].removeprefix("m").removeprefix("body").removeprefix("bdy").partition("_")
-    return which, what
+    body_number, _, setting = command.words[0].removeprefix("m").removeprefix("body").removeprefix("bdy").partition("_")
+    return body_number, setting
 
 
-def _turned(what: str, command: Command) -> Array | None:
+def _turned(setting: str, command: Command) -> Array | None:
     """The rotation (3, 3) of a command; None if its numbers are not those of one."""
-    if what == "eulerang":
+    if setting == "eulerang":
         angles = _vector(command)
         if angles is None:
             return None
@@ -158,33 +158,33 @@ def _turned(what: str, command: Command) -> Array | None:
     if abs(np.linalg.norm(q) - 1.0) > UNIT:
         return None
     q /= np.linalg.norm(q)
-    across = skew(q[1:])
-    return np.eye(3) + 2.0 * q[0] * across + 2.0 * across @ across
+    cross_matrix = skew(q[1:])
+    return np.eye(3) + 2.0 * q[0] * cross_matrix + 2.0 * cross_matrix @ cross_matrix
 
 
 def _relative(block: Body) -> Relative | None:
     """A block; None if it is incomplete or has commands of another kind."""
-    named: dict[str, tuple[str, ...]] = {}
+    bodies: dict[str, tuple[str, ...]] = {}
     axes, axis, speed = np.eye(3), None, 0.0
     for command in block:
-        which, what = _which(command)
-        if not what:
-            named[which] = command.words[1:]
-        elif which == "2" and what in TURNS:
-            turned = _turned(what, command)
-            if turned is None:
+        body_number, setting = _which(command)
+        if not setting:
+            bodies[body_number] = command.words[1:]
+        elif body_number == "2" and setting in TURNS:
+            rotation_matrix = _turned(setting, command)
+            if rotation_matrix is None:
                 return None
-            axes = axes @ turned
-        elif which == "2" and what == "ini_rotvec_d1":
+            axes = axes @ rotation_matrix
+        elif body_number == "2" and setting == "ini_rotvec_d1":
             axis, speed = _vector(command), number((*command.words, "", "")[4]) or 0.0
-        elif what not in ("ini_vec_d1",):
+        elif setting not in ("ini_vec_d1",):
             return None
-    if not all(len(named.get(body, ())) > 1 for body in "12") or named["2"][1] != "1":
+    if not all(len(bodies.get(body, ())) > 1 for body in "12") or bodies["2"][1] != "1":
         return None
-    if named["1"][1].lower() not in ("last", "1") or (axis is not None and not axis.any()):
+    if bodies["1"][1].lower() not in ("last", "1") or (axis is not None and not axis.any()):
         return None
-    at_end = named["1"][1].lower() == "last"
-    return Relative(named["1"][0].lower(), named["2"][0].lower(), at_end, axes, axis, abs(speed))
+    at_end = bodies["1"][1].lower() == "last"
+    return Relative(bodies["1"][0].lower(), bodies["2"][0].lower(), at_end, axes, axis, abs(speed))
 
 
 def _vector(command: Command) -> Array | None:

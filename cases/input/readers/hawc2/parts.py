@@ -45,7 +45,7 @@ class Parts:
         nacelle: names of the bodies between tower and shaft, upwards.
         blades: names.
         hubs: names of the bodies from the shaft to each blade, outwards.
-        beside: names of further bodies, and of the body of these that each is fixed to.
+        fixed_bodies: names of further bodies, and of the body of these that each is fixed to.
         joints: the constraints, by parent and child.
     """
 
@@ -57,7 +57,7 @@ class Parts:
     shaft: str
     blades: tuple[str, ...]
     hubs: tuple[tuple[str, ...], ...]
-    beside: dict[str, str]
+    fixed_bodies: dict[str, str]
     joints: dict[tuple[str, str], Joint]
 
     @property
@@ -89,10 +89,10 @@ def parts(htc: Text, commands: bodies.Body) -> Parts | str:
     name, axes = base
     if not name.startswith("tower"):
         return f"the body on the ground is {name}, not the tower: foundations and floaters are not read"
-    if (other := next((chain[0] for chain in chains if chain[0] != name), None)) is not None:
-        return f"the orientation of {other} from {name} is not defined by `relative` blocks"
-    if (absent := next((part for chain in chains for part in chain if part not in by_name), None)) is not None:
-        return f"the htc has no main_body {absent}"
+    if (other_root := next((chain[0] for chain in chains if chain[0] != name), None)) is not None:
+        return f"the orientation of {other_root} from {name} is not defined by `relative` blocks"
+    if (undefined := next((part for chain in chains for part in chain if part not in by_name), None)) is not None:
+        return f"the htc has no main_body {undefined}"
     common = [part for k, part in enumerate(chains[0]) if all(len(c) > k and c[k] == part for c in chains)][1:]
     turning = next((part for part in common if relatives[part].axis is not None), common[-1] if common else None)
     if turning is None:
@@ -101,10 +101,12 @@ def parts(htc: Text, commands: bodies.Body) -> Parts | str:
         return f"{name} is not clamped to the ground by fix0: foundations and floaters are not read"
     k = chains[0].index(turning)
     for part in dict.fromkeys(part for chain in chains for part in chain):
-        if lacking := _lacking(htc, by_name[part]):
-            return f"{lacking} of {part} is not there"
+        if missing_command := _lacking(htc, by_name[part]):
+            return f"{missing_command} of {part} is not there"
     inside = {part for chain in chains for part in chain}
-    beside = {child: block.parent for child, block in relatives.items() if child not in inside and child in by_name}
+    fixed_bodies = {
+        child: block.parent for child, block in relatives.items() if child not in inside and child in by_name
+    }
     return Parts(
         by_name,
         relatives,
@@ -114,7 +116,7 @@ def parts(htc: Text, commands: bodies.Body) -> Parts | str:
         turning,
         blades,
         tuple(tuple(chain[k + 1 : -1]) for chain in chains),
-        beside,
+        fixed_bodies,
         {(j.parent, j.child): j for j in _joints(commands)},
     )
 
@@ -144,13 +146,13 @@ def _fixed(commands: bodies.Body, tower: str) -> bool:
 def _joints(commands: bodies.Body) -> list[Joint]:
     out = []
     for kind, block in orientation.blocks(commands, *JOINTS):
-        named = {c.words[0].removeprefix("m").replace("bdy", "body"): c.words[1:] for c in block}
-        if not (named.get("body1") and named.get("body2")):
+        commands_of = {c.words[0].removeprefix("m").replace("bdy", "body"): c.words[1:] for c in block}
+        if not (commands_of.get("body1") and commands_of.get("body2")):
             continue
-        values = [number(word) for word in named.get("bearing_vector", ())[:4]]
+        values = [number(word) for word in commands_of.get("bearing_vector", ())[:4]]
         vector = None
         if len(values) == 4 and all(v is not None and np.isfinite(v) for v in values):
-            which, *components = (float(v) for v in values if v is not None)
-            vector = (round(which), np.array(components)) if any(components) else None
-        out.append(Joint(kind, named["body1"][0].lower(), named["body2"][0].lower(), vector))
+            reference, *components = (float(v) for v in values if v is not None)
+            vector = (round(reference), np.array(components)) if any(components) else None
+        out.append(Joint(kind, commands_of["body1"][0].lower(), commands_of["body2"][0].lower(), vector))
     return out

@@ -124,8 +124,8 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
         )
     grid = np.unique(np.concatenate([arc, r[(r > 0) & (r < arc[-1])]]))
     x, w = np.polynomial.legendre.leggauss(GAUSS)
-    half = 0.5 * np.diff(grid)[:, None]
-    s = (0.5 * (grid[1:] + grid[:-1])[:, None] + half * x).ravel()
+    half_length = 0.5 * np.diff(grid)[:, None]
+    s = (0.5 * (grid[1:] + grid[:-1])[:, None] + half_length * x).ravel()
     at = sp.pose(_axes(points, arc, s), np.stack([np.interp(s, arc, column) for column in points[:, :3].T], axis=-1))
     masses, products = _masses(body, points[:, :3])
     return Line(
@@ -134,7 +134,7 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
         points[:, :3],
         s,
         at,
-        (half * w).ravel(),
+        (half_length * w).ravel(),
         blade.between(r, stiffness, s),
         blade.between(r, mass, s),
         masses,
@@ -145,12 +145,12 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
 def _axes(points: Array, arc: Array, s: Array) -> Array:
     """(q, 3, 3) axes of the sections at arc lengths (q,), in the body's."""
     k = np.clip(np.searchsorted(arc, s, side="right") - 1, 0, len(arc) - 2)
-    along = np.diff(points[:, :3], axis=0)[k]
-    along /= np.linalg.norm(along, axis=1)[:, None]
-    sideways = np.eye(3)[np.where(np.abs(along[:, 0]) < 0.9, 0, 1)]
-    y = sideways - np.einsum("qi,qi->q", sideways, along)[:, None] * along
+    directions = np.diff(points[:, :3], axis=0)[k]
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    sideways = np.eye(3)[np.where(np.abs(directions[:, 0]) < 0.9, 0, 1)]
+    y = sideways - np.einsum("qi,qi->q", sideways, directions)[:, None] * directions
     y /= np.linalg.norm(y, axis=1)[:, None]
-    axes = np.stack([along, y, np.cross(along, y)], axis=-1)
+    axes = np.stack([directions, y, np.cross(directions, y)], axis=-1)
     return axes @ sp.rotation(0, np.radians(np.interp(s, arc, points[:, 3])))
 
 
@@ -178,9 +178,9 @@ def _masses(body: bodies.Body, nodes: Array) -> tuple[tuple[Mass, ...], tuple[Un
             )
         if min(numbers[4:8]) < 0:
             raise CaseError(f"{command.at}: concentrated_mass: a negative mass or moment of inertia: correct it")
-        own = np.diag([numbers[4]] * 3 + numbers[5:8])
+        about_centre = np.diag([numbers[4]] * 3 + numbers[5:8])
         centre = nodes[node] + numbers[1:4]
-        out.append(Mass(node, np.ascontiguousarray(transformed(own, sp.pose(np.eye(3), centre)))))
+        out.append(Mass(node, np.ascontiguousarray(transformed(about_centre, sp.pose(np.eye(3), centre)))))
         why = "products of inertia of a concentrated mass are not supported"
         not_used += unused("concentrated_mass", numbers[8:], "kg m²", command.text.path, why)
     return tuple(out), tuple(not_used)

@@ -15,28 +15,30 @@ SHOWN = 1e-5
 """Smallest effect of a rigid part on a frequency that is stated as a number."""
 
 
-def rigid_bodies(turbine: Turbine, split: Parts, lines: dict[str, Line], placed: Frames) -> tuple[str, ...]:
+def rigid_bodies(turbine: Turbine, split: Parts, lines: dict[str, Line], body_frames: Frames) -> tuple[str, ...]:
     """How much lower the frequencies would be if the bodies taken as rigid were as flexible as the htc has them."""
     rigid_parts: list[RigidPart] = []
     for k, name in enumerate(split.nacelle):
-        move = sp.adjoint(placed.pose[name])
-        carried = sum((moved(lines[n].inertia(), placed.pose[n]) for n in split.nacelle[k + 1 :]), np.zeros((6, 6)))
-        carried = carried + moved(lines[name].inertia(beyond_root=True), placed.pose[name])
+        move = sp.adjoint(body_frames.pose[name])
+        carried = sum(
+            (moved(lines[n].inertia(), body_frames.pose[n]) for n in split.nacelle[k + 1 :]), np.zeros((6, 6))
+        )
+        carried = carried + moved(lines[name].inertia(beyond_root=True), body_frames.pose[name])
         rigid_parts.append(RigidPart(name, "all", move @ lines[name].compliance() @ move.T, carried))
-    into = sp.inverse(placed.hub)
-    move = sp.adjoint(into @ placed.pose[split.shaft])
+    into = sp.inverse(body_frames.hub)
+    move = sp.adjoint(into @ body_frames.pose[split.shaft])
     rigid_parts.append(RigidPart(split.shaft, "rotor", move @ lines[split.shaft].compliance(torsion=False) @ move.T))
     common = [name for name in split.hubs[0] if all(name in hub for hub in split.hubs)]
     for name in split.hubs[0]:
-        around = sp.pose(sp.rotation(2, np.array(0.0 if name in common else -placed.azimuths[0])), np.zeros(3))
-        move = sp.adjoint(around @ into @ placed.pose[name])
+        rotation = sp.pose(sp.rotation(2, np.array(0.0 if name in common else -body_frames.azimuths[0])), np.zeros(3))
+        move = sp.adjoint(rotation @ into @ body_frames.pose[name])
         rigid_parts.append(
             RigidPart(name, "rotor" if name in common else "blade", move @ lines[name].compliance() @ move.T)
         )
     try:
-        made = machine(turbine)
-        lower = lowering(made, rigid_parts)
-        names = turbine_modes(made, 0.0, lower.shape[1]).names
+        full_machine = machine(turbine)
+        lower = lowering(full_machine, rigid_parts)
+        names = turbine_modes(full_machine, 0.0, lower.shape[1]).names
     except ValueError as error:  # no steady state
         flexible = ", ".join(part.name for part in rigid_parts)
         return (f"taken as rigid, with all mass: {flexible}; the effect of their flexibility is unknown: {error}",)

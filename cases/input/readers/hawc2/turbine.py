@@ -70,20 +70,20 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
         raise CaseError(f"{error}; --blade-only takes one blade of the turbine") from error
 
 
-def _read(path: Path, split: Parts, given: Mount) -> TurbineReading:
+def _read(path: Path, split: Parts, mount: Mount) -> TurbineReading:
     htc = load(path)
     tower, tower_file = tower_reader.beam(htc, f"{path.stem}'s tower", split.commands[split.tower])
     tower_line = line(htc, split.tower, split.commands[split.tower])
     names = (*split.nacelle, *split.rotating)
-    lines = {name: line(htc, name, split.commands[name]) for name in (*names, *split.beside)}
-    placed = frames(path, split, tower_line, lines)
-    tower, tower_unused = _top(tower, tower_line, placed)
-    beside, beside_unused = _beside(split, lines, htc.path)
+    lines = {name: line(htc, name, split.commands[name]) for name in (*names, *split.fixed_bodies)}
+    body_frames = frames(path, split, tower_line, lines)
+    tower, tower_unused = _top(tower, tower_line, body_frames)
+    fixed_bodies, fixed_unused = _beside(split, lines, htc.path)
     nacelle = np.zeros((6, 6))
-    for name in (*split.nacelle, *beside[False]):
-        nacelle += moved(lines[name].inertia(), placed.pose[name])
-    hub, drivetrain, drive_notes = hub_and_drivetrain(htc.path, split, lines, placed, beside[True])
-    blade = blade_reader.read(path, complete(given, placed.mount))
+    for name in (*split.nacelle, *fixed_bodies[False]):
+        nacelle += moved(lines[name].inertia(), body_frames.pose[name])
+    hub, drivetrain, drive_notes = hub_and_drivetrain(htc.path, split, lines, body_frames, fixed_bodies[True])
+    blade = blade_reader.read(path, complete(mount, body_frames.mount))
     _equal_blades(htc.path, split)
     gravity, gravity_note = _gravity(split.commands[split.tower])
     turbine = Turbine(
@@ -93,7 +93,7 @@ def _read(path: Path, split: Parts, given: Mount) -> TurbineReading:
         blades=len(split.blades),
         nacelle=nacelle,
         hub=hub,
-        shaft=placed.hub,
+        shaft=body_frames.hub,
         drivetrain=drivetrain,
         gravity=gravity,
     )
@@ -103,19 +103,21 @@ def _read(path: Path, split: Parts, given: Mount) -> TurbineReading:
         *drive_notes,
         *generator_note(turbine),
         *_locked(split),
-        *rigid_bodies(turbine, split, lines, placed),
+        *rigid_bodies(turbine, split, lines, body_frames),
         *(note for note in blade.source.notes if "orientation of the htc's bodies" not in note and not _alone(note)),
     )
-    shown = {name: lines[name] for name in dict.fromkeys([*names, *beside[False], *beside[True]])}
-    once = {id(split.commands[name]): body_line for name, body_line in reversed(shown.items())}
+    used_lines = {name: lines[name] for name in dict.fromkeys([*names, *fixed_bodies[False], *fixed_bodies[True]])}
+    distinct_lines = {id(split.commands[name]): body_line for name, body_line in reversed(used_lines.items())}
     not_used = (
         *tower_unused,
-        *(u for body_line in reversed(once.values()) for u in body_line.unused),
-        *beside_unused,
-        *unused("yaw", [np.degrees(placed.yaw)], "deg", path, "the nacelle faces the wind"),
+        *(u for body_line in reversed(distinct_lines.values()) for u in body_line.unused),
+        *fixed_unused,
+        *unused("yaw", [np.degrees(body_frames.yaw)], "deg", path, "the nacelle faces the wind"),
         *blade.source.unused,
     )
-    files = dict.fromkeys([path, tower_file, *(body_line.file for body_line in shown.values()), *blade.source.files])
+    files = dict.fromkeys(
+        [path, tower_file, *(body_line.file for body_line in used_lines.values()), *blade.source.files]
+    )
     speed = split.relatives[split.shaft].speed
     return TurbineReading(turbine, Source(NAME, tuple(files), AXES, notes, _merged(not_used)), float(speed))
 
@@ -124,20 +126,23 @@ def _merged(quantities: tuple[Unused, ...]) -> tuple[Unused, ...]:
     """Quantities of several bodies that have the same name as one."""
     out: dict[tuple[str, Path, str], Unused] = {}
     for u in quantities:
-        before = out.get((u.name, u.file, u.why))
-        out[u.name, u.file, u.why] = u if before is None else replace(before, values=(*before.values, *u.values))
+        previous = out.get((u.name, u.file, u.why))
+        out[u.name, u.file, u.why] = u if previous is None else replace(previous, values=(*previous.values, *u.values))
     return tuple(out.values())
 
 
-def _top(tower: Blade, read: Line, placed: Frames) -> tuple[Blade, tuple[Unused, ...]]:
+def _top(tower: Blade, tower_line: Line, body_frames: Frames) -> tuple[Blade, tuple[Unused, ...]]:
     """The tower with the masses at its last node; those between its ends are not used."""
-    last, tip = len(read.nodes) - 1, np.zeros((6, 6))
-    for mass in read.masses:
+    last, tip = len(tower_line.nodes) - 1, np.zeros((6, 6))
+    for mass in tower_line.masses:
         if mass.node == last:
-            tip += moved(mass.inertia, sp.inverse(placed.top))
-    between = [float(mass.inertia[0, 0]) for mass in read.masses if 0 < mass.node < last]
+            tip += moved(mass.inertia, sp.inverse(body_frames.top))
+    between = [float(mass.inertia[0, 0]) for mass in tower_line.masses if 0 < mass.node < last]
     why = "a concentrated mass between the tower's ends is not supported: distribute it in the structural file's m"
-    return replace(tower, tip_mass=tip), (*read.unused, *unused("concentrated_mass", between, "kg", read.file, why))
+    return replace(tower, tip_mass=tip), (
+        *tower_line.unused,
+        *unused("concentrated_mass", between, "kg", tower_line.file, why),
+    )
 
 
 def _equal_blades(path: Path, split: Parts) -> None:
@@ -145,10 +150,10 @@ def _equal_blades(path: Path, split: Parts) -> None:
     content = [
         [c.words for c in split.commands[name] if c.words[0] not in ("name", "nbodies")] for name in split.blades
     ]
-    other = next((name for name, words in zip(split.blades, content, strict=True) if words != content[0]), None)
-    if other:
+    unequal = next((name for name, words in zip(split.blades, content, strict=True) if words != content[0]), None)
+    if unequal:
         raise CaseError(
-            f"{path}: {other}: not equal to {split.blades[0]}: a turbine has equal blades: use copy_main_body"
+            f"{path}: {unequal}: not equal to {split.blades[0]}: a turbine has equal blades: use copy_main_body"
         )
 
 
@@ -156,13 +161,13 @@ def _beside(split: Parts, lines: dict[str, Line], path: Path) -> tuple[dict[bool
     """Bodies fixed to the nacelle (False) and to shaft and hubs (True); those elsewhere are not used."""
     out: dict[bool, list[str]] = {False: [], True: []}
     not_used: list[Unused] = []
-    for name in split.beside:
+    for name in split.fixed_bodies:
         holder = name
-        while holder in split.beside:
-            joint = split.joints.get((split.beside[holder], holder))
+        while holder in split.fixed_bodies:
+            joint = split.joints.get((split.fixed_bodies[holder], holder))
             if joint is None or joint.kind == "bearing1":
-                raise CaseError(f"{path}: {holder}: not fixed to {split.beside[holder]} by fix1: not supported")
-            holder = split.beside[holder]
+                raise CaseError(f"{path}: {holder}: not fixed to {split.fixed_bodies[holder]} by fix1: not supported")
+            holder = split.fixed_bodies[holder]
         if holder in split.nacelle or holder in split.rotating:
             out[holder in split.rotating].append(name)
         else:
@@ -190,15 +195,15 @@ def _locked(split: Parts) -> tuple[str, ...]:
             if joint.kind != "fix1":
                 out.setdefault(joint.kind, []).append(f"{child} on {parent}")
     return tuple(
-        f"locked at the angle of the orientation ({kind}): {', '.join(dict.fromkeys(joined))}"
-        for kind, joined in out.items()
+        f"locked at the angle of the orientation ({kind}): {', '.join(dict.fromkeys(pairs))}"
+        for kind, pairs in out.items()
     )
 
 
 def _gravity(tower: bodies.Body) -> tuple[float, str]:
-    given = [number(c.words[1]) for c in tower if c.words[0] == "gravity" and len(c.words) > 1]
-    if given and given[-1] is not None and np.isfinite(given[-1]):
-        return float(given[-1]), f"{given[-1]:g} m/s² (of the tower)"
+    values = [number(c.words[1]) for c in tower if c.words[0] == "gravity" and len(c.words) > 1]
+    if values and values[-1] is not None and np.isfinite(values[-1]):
+        return float(values[-1]), f"{values[-1]:g} m/s² (of the tower)"
     return GRAVITY, f"{GRAVITY:g} m/s² (HAWC2's)"
 
 

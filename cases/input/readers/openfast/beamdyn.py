@@ -21,7 +21,7 @@ from .....core.blade_checks import follows
 from ...errors import CaseError
 from ..matrices import BEAMDYN, fault, in_axes, mass_fault
 from ..source import OPENFAST_AXES, Mount, Reading, Source, Unused, unused
-from ..text import ROUNDING, Table, Text, fractions, keys, leading, load, row, table, tokens, value, whole, word
+from ..text import ROUNDING, Table, Text, fractions, integer, keys, leading, load, row, table, tokens, value, word
 from . import elastodyn, elastodyn_unused
 from .beamdyn_axis import Axis, line, measured, resolved, roll
 
@@ -61,8 +61,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     else:
         main = _main(path, mount)
     hub = load(mount.main) if mount.main and is_elastodyn(mount.main) else None
-    stated = elastodyn.hub(hub) if hub else None
-    mounted = elastodyn.complete(mount, stated.mount if stated else None)
+    hub_data = elastodyn.hub(hub) if hub else None
+    mounted = elastodyn.complete(mount, hub_data.mount if hub_data else None)
     if main is None and mounted.length is None:
         raise CaseError(
             f"{path}: length: stations are fractions of it, and the main file with the key points is not beside it: "
@@ -71,17 +71,17 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     axis = _axis(_points(main)) if main is not None else line(mounted.length or 0.0)
     sections, stiffness, mass = _sections(text)
     eta = fractions(sections, "station_eta")
-    files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if stated and mount.main else ())
+    files = tuple(t.path for t in (text, main) if t is not None) + ((mount.main,) if hub_data and mount.main else ())
     blade = assemble(path.stem, path, axis, eta, stiffness, mass, mounted)
-    if stated and stated.tip_mass:
-        blade = replace(blade, tip_mass=np.diag([stated.tip_mass] * 3 + [0.0] * 3))
+    if hub_data and hub_data.tip_mass:
+        blade = replace(blade, tip_mass=np.diag([hub_data.tip_mass] * 3 + [0.0] * 3))
     notes = [
         "matrices made symmetric",
         "twist between key points: a cubic spline, sampled at key points and stations",
     ]
     if main is None:
         notes.append("no main file: straight, untwisted")
-    if stated is None and mounted.unstated:
+    if hub_data is None and mounted.unstated:
         notes.append(f"no ElastoDyn main file: {', '.join(mounted.unstated)} taken as 0")
     axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
     unused_values = (
@@ -99,21 +99,21 @@ def _damping(text: Text) -> tuple[Unused, ...]:
     """The stiffness-proportional damping of a blade file: the six numbers below the row that names them."""
     heads = [k for k, line in enumerate(text.lines) if [w.lower() for w in tokens(line)[:2]] == ["mu1", "mu2"]]
     below = next((leading(line) for line in text.lines[heads[0] + 1 :] if leading(line)), []) if heads else []
-    named = keys(text)
-    on = "damp_type" not in named or value(text, named, "damp_type") != 0
+    entries = keys(text)
+    on = "damp_type" not in entries or value(text, entries, "damp_type") != 0
     return unused(DAMPING, below[:6], "s", text.path, "modes are undamped") if on else ()
 
 
 def _actuator(main: Text) -> tuple[Unused, ...]:
-    named = keys(main)
-    if word(main, {"usepitchact": (0, "false"), **named}, "UsePitchAct").lower().strip(".") not in ("true", "t"):
+    entries = keys(main)
+    if word(main, {"usepitchact": (0, "false"), **entries}, "UsePitchAct").lower().strip(".") not in ("true", "t"):
         return ()
     why = "the pitch bearing is treated as clamped"
     return tuple(
         u
         for name, unit in (("PitchJ", "kg m^2"), ("PitchK", "kg m^2/s^2"), ("PitchC", "kg m^2/s"))
-        if name.lower() in named
-        for u in unused(name, [value(main, named, name)], unit, main.path, why)
+        if name.lower() in entries
+        for u in unused(name, [value(main, entries, name)], unit, main.path, why)
     )
 
 
@@ -135,10 +135,10 @@ def _named(main: Text) -> Path:
 
 def _points(main: Text) -> Table:
     """The key points: the first rows of four numbers after their count."""
-    named = keys(main)
-    count = whole(main, named, "kp_total")
-    members = whole(main, named, "member_total") if "member_total" in named else 1
-    first = named["kp_total"][0] + 1 + members
+    entries = keys(main)
+    count = integer(main, entries, "kp_total")
+    members = integer(main, entries, "member_total") if "member_total" in entries else 1
+    first = entries["kp_total"][0] + 1 + members
     while first < len(main.lines) and not leading(main.lines[first]):
         first += 1
     points = table(main, first, count, KEY_POINTS)
@@ -167,9 +167,9 @@ def _axis(points: Table) -> Axis:
 
 def _sections(text: Text) -> tuple[Table, Array, Array]:
     """Fractions (n,) of the stations, and stiffness and mass (n, 6, 6) in BeamDyn's order and axes."""
-    named = keys(text)
-    count = whole(text, named, "station_total")
-    k = named["station_total"][0] + 1
+    entries = keys(text)
+    count = integer(text, entries, "station_total")
+    k = entries["station_total"][0] + 1
     while k < len(text.lines) and not _starts(text, k):
         k += 1
     etas, lines, matrices = [], [], []
@@ -180,13 +180,13 @@ def _sections(text: Text) -> tuple[Table, Array, Array]:
         lines.append(k)
         k += 1
         pair = []
-        for what in ("stiffness", "mass"):
+        for quantity in ("stiffness", "mass"):
             first = _next(text, k, i, count)
-            rows = [_row(text, first + j, what, j, i, count) for j in range(6)]
+            rows = [_row(text, first + j, quantity, j, i, count) for j in range(6)]
             matrix = np.array(rows)
-            wrong = fault(matrix) if what == "stiffness" else mass_fault(matrix)
-            if wrong:
-                raise CaseError(f"{text.at(first)}: {what} at station_eta {eta:g}: {wrong}")
+            message = fault(matrix) if quantity == "stiffness" else mass_fault(matrix)
+            if message:
+                raise CaseError(f"{text.at(first)}: {quantity} at station_eta {eta:g}: {message}")
             pair.append((matrix + matrix.T) / 2)
             k = first + 6
         matrices.append(pair)
@@ -210,10 +210,10 @@ def _next(text: Text, k: int, i: int, count: int) -> int:
     return k
 
 
-def _row(text: Text, k: int, what: str, j: int, i: int, count: int) -> list[float]:
+def _row(text: Text, k: int, quantity: str, j: int, i: int, count: int) -> list[float]:
     if k >= len(text.lines):
         raise CaseError(f"{text.at(k)}: the file ends within station {i + 1} of {count}: give the whole file")
-    return row(text, k, tuple(f"{what} {j + 1}{c}" for c in range(1, 7)))
+    return row(text, k, tuple(f"{quantity} {j + 1}{c}" for c in range(1, 7)))
 
 
 def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, mass: Array, mount: Mount) -> Blade:
@@ -225,9 +225,9 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
         CaseError: if the data are invalid.
     """
     length = axis.arc[-1]
-    own = eta * length
-    points = axis.arc[np.abs(axis.arc[:, None] - own).min(1) > MIN_SPACING * length]
-    s = np.sort(np.concatenate([own, points]))
+    arc = eta * length
+    points = axis.arc[np.abs(axis.arc[:, None] - arc).min(1) > MIN_SPACING * length]
+    s = np.sort(np.concatenate([arc, points]))
     s[-1] = length
     if not follows(s, axis.points(axis.at(s))):
         s = resolved(axis, s)
@@ -238,7 +238,7 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
             f"length: {mount.length:g} m by the main file or --length, {length:g} m by the key points: "
             "check that both are of the same blade"
         )
-    at = [_between(own, m, s) for m in (stiffness, mass)]
+    at = [_between(arc, m, s) for m in (stiffness, mass)]
     try:
         return Blade(
             name=name,

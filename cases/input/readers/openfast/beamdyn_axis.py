@@ -70,10 +70,10 @@ def resolved(axis: Axis, s: Array) -> Array:
     """The arc lengths ``s`` (n,), with more inserted where the curve bends by more than ``TURN``, for core's spline."""
     fine = (s[:-1, None] + np.diff(s)[:, None] * np.linspace(0, 1, FINE)).ravel()
     t = _tangents(axis, np.interp(fine, axis.arc, axis.z)).reshape(-1, FINE, 3)
-    turn = np.linalg.norm(np.diff(t, axis=1), axis=2).sum(1)
-    pieces = np.clip(np.ceil(turn / TURN), 1, FINE).astype(int)
-    inner = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(s[:-1], s[1:], pieces, strict=True)]
-    return np.concatenate([*inner, s[-1:]])
+    bend = np.linalg.norm(np.diff(t, axis=1), axis=2).sum(1)
+    pieces = np.clip(np.ceil(bend / TURN), 1, FINE).astype(int)
+    points = [np.linspace(a, b, n + 1)[:-1] for a, b, n in zip(s[:-1], s[1:], pieces, strict=True)]
+    return np.concatenate([*points, s[-1:]])
 
 
 def _tangents(axis: Axis, z: Array) -> Array:
@@ -91,6 +91,6 @@ def _swing(t: Array) -> Array:
 def roll(axis: Axis, z: Array) -> Array:
     """Angle (n,) from the untwisted section axes of ``core.blade`` to BeamDyn's, whose x has no y-component."""
     t = _tangents(axis, z)
-    theirs = np.stack([-t[:, 2], np.zeros_like(z), t[:, 0]], axis=1) / np.hypot(t[:, 0], t[:, 2])[:, None]
-    y, zz = np.einsum("nij,ni->jn", _swing(t), theirs)[1:]
+    beamdyn_y = np.stack([-t[:, 2], np.zeros_like(z), t[:, 0]], axis=1) / np.hypot(t[:, 0], t[:, 2])[:, None]
+    y, zz = np.einsum("nij,ni->jn", _swing(t), beamdyn_y)[1:]
     return np.arctan2(-y, zz)

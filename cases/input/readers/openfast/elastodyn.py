@@ -19,7 +19,7 @@ from .....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ...errors import CaseError
 from ..matrices import about
 from ..source import OPENFAST_AXES, Mount, Reading, Source
-from ..text import Text, fractions, keys, leading, load, table, tokens, value, whole, word
+from ..text import Text, fractions, integer, keys, leading, load, table, tokens, value, word
 from . import elastodyn_unused, fast7_offsets
 
 Array = NDArray[np.float64]
@@ -50,8 +50,8 @@ def is_blade(text: Text) -> bool:
 
 def is_main(text: Text) -> bool:
     """Whether these are lines of a main file."""
-    named = keys(text)
-    return "tiprad" in named and "hubrad" in named
+    entries = keys(text)
+    return "tiprad" in entries and "hubrad" in entries
 
 
 def read(path: Path, mount: Mount | None = None) -> Reading:
@@ -71,31 +71,31 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         main, text = path, load(hub(text).blade_file)
     else:
         main = mount.main or (None if mount.length else sibling_file(path, is_main, blade_file))
-    stated = hub(load(main)) if main else None
-    return _blade(text, mount, stated, main)
+    hub_data = hub(load(main)) if main else None
+    return _blade(text, mount, hub_data, main)
 
 
-def sibling_file(path: Path, kind: Callable[[Text], bool], named: Callable[[Text], Path]) -> Path | None:
+def sibling_file(path: Path, kind: Callable[[Text], bool], file_of: Callable[[Text], Path]) -> Path | None:
     """The only main file in the folder of ``path`` that references ``path``; None if there is none.
 
     Raises:
         CaseError: if there are several.
     """
     candidates = []
-    for other in sorted(path.parent.glob("*")):
+    for candidate in sorted(path.parent.glob("*")):
         fits = (
-            other.suffix.lower() in {".dat", ".inp", ".txt", ".fst"}
-            and other.is_file()
-            and other.stat().st_size < MAX_BYTES
+            candidate.suffix.lower() in {".dat", ".inp", ".txt", ".fst"}
+            and candidate.is_file()
+            and candidate.stat().st_size < MAX_BYTES
         )
-        if not fits or other == path:
+        if not fits or candidate == path:
             continue
         try:
-            text = load(other)
+            text = load(candidate)
         except CaseError:  # empty or not text: output of a run, not a main file
             continue
-        if kind(text) and named(text).resolve() == path.resolve():
-            candidates.append(other)
+        if kind(text) and file_of(text).resolve() == path.resolve():
+            candidates.append(candidate)
     if len(candidates) > 1:
         names = ", ".join(f.name for f in candidates)
         raise CaseError(f"{path}: {len(candidates)} main files beside it name it ({names}): choose one with --main")
@@ -108,8 +108,8 @@ def hub(text: Text) -> Hub:
     Raises:
         CaseError: if a value is missing or not a number.
     """
-    named = keys(text)
-    tip, root = value(text, named, "TipRad"), value(text, named, "HubRad")
+    entries = keys(text)
+    tip, root = value(text, entries, "TipRad"), value(text, entries, "HubRad")
     if tip <= root:
         raise CaseError(
             f"{text.path}: TipRad {tip:g} is not beyond HubRad {root:g}: no blade between them; correct one"
@@ -117,9 +117,9 @@ def hub(text: Text) -> Hub:
     mount = Mount(
         length=tip - root,
         hub_radius=root,
-        precone=np.radians(value(text, named, "PreCone1", "PreCone")),
+        precone=np.radians(value(text, entries, "PreCone1", "PreCone")),
     )
-    mass = value(text, named, "TipMass1", "TipMass")
+    mass = value(text, entries, "TipMass1", "TipMass")
     return Hub(mount, mass, blade_file(text))
 
 
@@ -132,22 +132,22 @@ def blade_file(text: Text) -> Path:
     return text.path.parent / word(text, keys(text), "BldFile1", "BldFile").replace("\\", "/")
 
 
-def complete(mount: Mount, stated: Mount | None) -> Mount:
-    """``mount`` with missing values from ``stated``."""
-    given = {f.name: getattr(mount, f.name) for f in fields(Mount) if getattr(mount, f.name) is not None}
-    return replace(stated or Mount(), **given)
+def complete(mount: Mount, file_mount: Mount | None) -> Mount:
+    """``mount`` with missing values from ``file_mount``."""
+    values = {f.name: getattr(mount, f.name) for f in fields(Mount) if getattr(mount, f.name) is not None}
+    return replace(file_mount or Mount(), **values)
 
 
-def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> Reading:
-    named = keys(text)
-    count = whole(text, named, "NBlInpSt")
-    factors = {name: value(text, named, name) for name in MULTIPLIERS}
+def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) -> Reading:
+    entries = keys(text)
+    count = integer(text, entries, "NBlInpSt")
+    factors = {name: value(text, entries, name) for name in MULTIPLIERS}
     for name, factor in factors.items():
         if factor <= 0:
             raise CaseError(
-                f"{text.at(named[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
+                f"{text.at(entries[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
             )
-    first = max(k for k, _ in (named[name.lower()] for name in MULTIPLIERS)) + 1
+    first = max(k for k, _ in (entries[name.lower()] for name in MULTIPLIERS)) + 1
     heads = [k for k in range(first, len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "blfract"]
     first = heads[0] + 1 if heads else first
     columns = _columns(tokens(text.lines[heads[0]])) if heads else COLUMNS
@@ -158,7 +158,7 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
     sections = table(text, start, count, columns)
     sections.positive(*[name for name in POSITIVE if name in columns])
     eta = fractions(sections, "BlFract")
-    mounted = complete(mount, stated.mount if stated else None)
+    mounted = complete(mount, hub_data.mount if hub_data else None)
     if mounted.length is None:
         raise CaseError(
             f"{text.path}: length: stations are fractions of it, and no main file defines it: "
@@ -166,7 +166,7 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
         )
     by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())
     flap_inertia, edge_inertia = (sections.columns.get(n, np.zeros(count)) for n in ("FlpIner", "EdgIner"))
-    tip = np.diag([stated.tip_mass] * 3 + [0.0] * 3) if stated else np.zeros((6, 6))
+    tip = np.diag([hub_data.tip_mass] * 3 + [0.0] * 3) if hub_data else np.zeros((6, 6))
     twist = -np.radians(sections["StrcTwst"])
     offsets = mount.offsets is not False
     offset_columns = {name: sections[name] for name in fast7_offsets.COLUMNS if offsets and name in sections.columns}
@@ -192,8 +192,8 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    used = [name for name, values in offset_columns.items() if values.any()]
-    axes = f"{OPENFAST_AXES}; {'the axis is the elastic axis' if used else 'all centres on the pitch axis'}"
+    used_offsets = [name for name, values in offset_columns.items() if values.any()]
+    axes = f"{OPENFAST_AXES}; {'the axis is the elastic axis' if used_offsets else 'all centres on the pitch axis'}"
     unused_values = (
         *elastodyn_unused.of_table(sections, USED, offsets),
         *elastodyn_unused.of_blade(text),
@@ -201,8 +201,8 @@ def _blade(text: Text, mount: Mount, stated: Hub | None, main: Path | None) -> R
     )
     files = (text.path,) if main is None else (text.path, main)
     notes = _notes(factors, main, mounted, columns)
-    if used:
-        largest = ", ".join(f"{name} {max(offset_columns[name], key=abs):g} m" for name in used)
+    if used_offsets:
+        largest = ", ".join(f"{name} {max(offset_columns[name], key=abs):g} m" for name in used_offsets)
         notes += (
             f"offsets used (largest): {largest}; rotated by the structural twist; `offsets = false` or --no-offsets leaves "
             "them out, as FAST itself does",
@@ -216,10 +216,11 @@ def _columns(names: list[str]) -> tuple[str, ...]:
 
 
 def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns: tuple[str, ...]) -> tuple[str, ...]:
-    said = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
-    given = mounted.multipliers
-    out = [f"{said}: {'multiply the table' if given is None else 'replaced by {:g}, {:g}, {:g}'.format(*given)}"]
-    rigid = [what for what, name in (("axial", "EAStff"), ("torsional", "GJStff")) if name not in columns]
+    factors_text = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
+    multipliers = mounted.multipliers
+    use = "multiply the table" if multipliers is None else "replaced by {:g}, {:g}, {:g}".format(*multipliers)
+    out = [f"{factors_text}: {use}"]
+    rigid = [strain for strain, name in (("axial", "EAStff"), ("torsional", "GJStff")) if name not in columns]
     if rigid:
         out.append(f"{' and '.join(rigid)} stiffness not in this format: treated as rigid; shear is rigid")
     if "FlpIner" not in columns:

@@ -15,46 +15,46 @@ from ..source import Unused
 from ..text import Text, keys, number, value
 from .elastodyn_unused import TEETER
 
-Named = dict[str, tuple[int, str]]
+Entries = dict[str, tuple[int, str]]
 
 
-def hub(main: Text, named: Named) -> np.ndarray:
+def hub(main: Text, entries: Entries) -> np.ndarray:
     """(6, 6) inertia of the hub at the rotor's apex, in the shaft's axes."""
-    moments = np.array([0.0, 0.0, value(main, named, "HubIner")])
-    return body(value(main, named, "HubMass"), moments, np.array([0.0, 0.0, number_or(main, "HubCM", 0.0)]))
+    moments = np.array([0.0, 0.0, value(main, entries, "HubIner")])
+    return body(value(main, entries, "HubMass"), moments, np.array([0.0, 0.0, number_or(main, "HubCM", 0.0)]))
 
 
-def hub_of_two(main: Text, named: Named, undersling: float) -> np.ndarray:
+def hub_of_two(main: Text, entries: Entries, undersling: float) -> np.ndarray:
     """(6, 6) inertia of the hub of two blades at the rotor's apex, in the shaft's axes.
 
     HubIner is about the teeter hinge, and the moment about the shaft is the same about the mass centre, as of a cylinder along
     the blades (ElastoDyn's source code, ``Hubg1Iner``); files with HubIner_Teeter give the two apart.
     """
-    mass, centre = value(main, named, "HubMass"), number_or(main, "HubCM", 0.0)
-    of_shaft, name = value(main, named, "HubIner"), "HubIner"
-    if "hubiner_teeter" in named:
+    mass, centre = value(main, entries, "HubMass"), number_or(main, "HubCM", 0.0)
+    of_shaft, name = value(main, entries, "HubIner"), "HubIner"
+    if "hubiner_teeter" in entries:
         name = "HubIner_Teeter"
-    across = value(main, named, name) - mass * (undersling - centre) ** 2
-    if across < 0:
+    transverse = value(main, entries, name) - mass * (undersling - centre) ** 2
+    if transverse < 0:
         raise CaseError(
-            f"{main.at(named[name.lower()][0])}: {name}: less than HubMass at its distance from the teeter hinge, "
+            f"{main.at(entries[name.lower()][0])}: {name}: less than HubMass at its distance from the teeter hinge, "
             f"{mass * (undersling - centre) ** 2:g} kg m²: it is about the hinge; correct one"
         )
-    moments = np.array([0.0, across, across if name == "HubIner" else of_shaft])
+    moments = np.array([0.0, transverse, transverse if name == "HubIner" else of_shaft])
     return body(mass, moments, np.array([0.0, 0.0, centre]))
 
 
-def teeter(main: Text, named: Named) -> tuple[Teeter | None, float, tuple[str, ...]]:
+def teeter(main: Text, entries: Entries) -> tuple[Teeter | None, float, tuple[str, ...]]:
     """The teeter hinge of two blades, the undersling, m, and a note.
 
     The apex is upwind of the hinge by UndSling, and OverHang reaches to the hinge. A soft stop at 0 is a spring.
     """
     undersling = number_or(main, "UndSling", 0.0)
-    if not flag(main, named, "TeetDOF"):
+    if not flag(main, entries, "TeetDOF"):
         return None, undersling, ("the hub does not teeter (TeetDOF is False)",)
     if number_or(main, "Delta3", 0.0):
         raise CaseError(
-            f"{main.at(named['delta3'][0])}: Delta3: {number_or(main, 'Delta3', 0.0):g}: only a hinge at right angles to the "
+            f"{main.at(entries['delta3'][0])}: Delta3: {number_or(main, 'Delta3', 0.0):g}: only a hinge at right angles to the "
             "blades is solved here; set it to 0, or TeetDOF to False"
         )
     soft = number_or(main, "TeetMod", 0.0) == 1 and number_or(main, "TeetSStP", 0.0) == 0
@@ -65,8 +65,8 @@ def teeter(main: Text, named: Named) -> tuple[Teeter | None, float, tuple[str, .
 
 def without_hinge(of_blade: tuple[Unused, ...], teeter: Teeter | None) -> tuple[Unused, ...]:
     """What a blade does not use, with the hinge's data that a turbine of two blades uses left out."""
-    used = ("TeetDOF", "UndSling", "TeetMod", *(("TeetSSSp",) if teeter and teeter.stiffness else ()))
-    out = (u for u in of_blade if u.name not in used)
+    used_names = ("TeetDOF", "UndSling", "TeetMod", *(("TeetSSSp",) if teeter and teeter.stiffness else ()))
+    out = (u for u in of_blade if u.name not in used_names)
     return tuple(replace(u, why="the hinge is linear and undamped") if u.name in TEETER else u for u in out)
 
 
@@ -83,7 +83,7 @@ def number_or(text: Text, name: str, otherwise: float) -> float:
     return out if out is not None and np.isfinite(out) else otherwise
 
 
-def flag(text: Text, named: Named, name: str) -> bool:
+def flag(text: Text, entries: Entries, name: str) -> bool:
     """Whether the value under a name is true; False if it is missing."""
-    line = named.get(name.lower())
+    line = entries.get(name.lower())
     return line is not None and line[1].lower().strip(".") in ("true", "t")

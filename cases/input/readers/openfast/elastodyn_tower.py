@@ -12,7 +12,7 @@ import numpy as np
 from .....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ...errors import CaseError
 from ..source import Mount, Reading, Source, Unused, unused
-from ..text import Text, fractions, keys, leading, load, number, table, tokens, value, whole, word
+from ..text import Text, fractions, integer, keys, leading, load, number, table, tokens, value, word
 from . import elastodyn
 
 NAME = "ElastoDyn tower"
@@ -48,9 +48,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     tower, notes = beam(text, height)
     motions = "flapwise is fore-aft, edgewise is side-to-side"
-    alone = "the tower alone: nacelle and rotor, and their weight, are included by `southwell campbell TURBINE.fst`"
+    scope = "the tower alone: nacelle and rotor, and their weight, are included by `southwell campbell TURBINE.fst`"
     files = (path,) if main is None else (path, main)
-    return Reading(tower, Source(NAME, files, AXES, (motions, *notes, alone), of_tower(text)), speed=0.0)
+    return Reading(tower, Source(NAME, files, AXES, (motions, *notes, scope), of_tower(text)), speed=0.0)
 
 
 def tower_file(main: Text) -> Path:
@@ -68,9 +68,9 @@ def tower_height(main: Text) -> float:
     Raises:
         CaseError: if a value is missing, or the top is not above the base.
     """
-    named = keys(main)
-    top = value(main, named, "TowerHt")
-    base = next((value(main, named, name) for name in ("TowerBsHt", "TwrRBHt") if name.lower() in named), 0.0)
+    entries = keys(main)
+    top = value(main, entries, "TowerHt")
+    base = next((value(main, entries, name) for name in ("TowerBsHt", "TwrRBHt") if name.lower() in entries), 0.0)
     if top <= base:
         raise CaseError(
             f"{main.path}: TowerHt {top:g} is not above TowerBsHt {base:g}: no tower between them; correct one"
@@ -84,16 +84,16 @@ def beam(text: Text, height: float) -> tuple[Blade, tuple[str, ...]]:
     Raises:
         CaseError: naming the file and line at fault.
     """
-    named = keys(text)
-    count = whole(text, named, "NTwInpSt")
-    factors = [value(text, named, name) for name in MULTIPLIERS]
+    entries = keys(text)
+    count = integer(text, entries, "NTwInpSt")
+    factors = [value(text, entries, name) for name in MULTIPLIERS]
     for name, factor in zip(MULTIPLIERS, factors, strict=True):
         if factor <= 0:
             raise CaseError(
-                f"{text.at(named[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
+                f"{text.at(entries[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
             )
     heads = [k for k in range(len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "htfract"]
-    first = heads[0] + 1 if heads else max(named[name.lower()][0] for name in MULTIPLIERS) + 1
+    first = heads[0] + 1 if heads else max(entries[name.lower()][0] for name in MULTIPLIERS) + 1
     start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
     names = tokens(text.lines[heads[0]]) if heads else list(COLUMNS)
     by_lower_case = {name.lower(): name for name in (*COLUMNS, *OFFSETS)}
@@ -114,16 +114,16 @@ def beam(text: Text, height: float) -> tuple[Blade, tuple[str, ...]]:
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    said = ", ".join(f"{name} = {factor:g}" for name, factor in zip(MULTIPLIERS, factors, strict=True))
+    factors_text = ", ".join(f"{name} = {factor:g}" for name, factor in zip(MULTIPLIERS, factors, strict=True))
     rigid = (
         "axial, torsional and shear stiffness and moments of inertia of the tower's sections: not used by this format"
     )
-    return tower, (f"{said}: multiply the table", rigid)
+    return tower, (f"{factors_text}: multiply the table", rigid)
 
 
 def of_tower(text: Text) -> tuple[Unused, ...]:
     """Non-zero quantities of a tower file that are not used."""
-    named = keys(text)
+    entries = keys(text)
     out: list[Unused] = []
     groups = (
         (
@@ -133,12 +133,12 @@ def of_tower(text: Text) -> tuple[Unused, ...]:
         ),
     )
     for name, keyed, unit in groups:
-        values = [number(named[k][1]) or 0.0 for k in keyed if k in named]
+        values = [number(entries[k][1]) or 0.0 for k in keyed if k in entries]
         out += unused(name, values, unit, text.path, "modes are undamped")
-    shapes = [k for k in named if k.startswith(("twfam", "twssm"))]
-    values = [number(named[k][1]) or 0.0 for k in shapes]
+    shapes = [k for k in entries if k.startswith(("twfam", "twssm"))]
+    values = [number(entries[k][1]) or 0.0 for k in shapes]
     out += unused("TwFAM1Sh … TwSSM2Sh", values, "", text.path, "ElastoDyn's own mode shapes; they are computed")
-    tuned = [number(named[k][1]) or 0.0 for k in named if k.startswith(("fasttunr", "ssstunr", "fastunr"))]
+    tuned = [number(entries[k][1]) or 0.0 for k in entries if k.startswith(("fasttunr", "ssstunr", "fastunr"))]
     if {*tuned} - {1.0}:
         out += unused("FAStTunr, SSStTunr", tuned, "", text.path, "they scale ElastoDyn's modal stiffness")
     return tuple(out)

@@ -33,11 +33,11 @@ TEETER = {
 CLAMPED = "the teeter hinge is treated as clamped: modes in which the rotor teeters are not those of this blade"
 
 
-def of_table(sections: Table, used: tuple[str, ...], offsets: bool) -> tuple[Unused, ...]:
-    """Non-zero columns of a blade table not among ``used``; ``offsets``: whether the offset columns are used."""
+def of_table(sections: Table, used_columns: tuple[str, ...], offsets: bool) -> tuple[Unused, ...]:
+    """Non-zero columns of a blade table not among ``used_columns``; ``offsets``: whether the offset columns are used."""
     out: list[Unused] = []
     for name, values in sections.columns.items():
-        if name in used or (name in OFFSETS and offsets):
+        if name in used_columns or (name in OFFSETS and offsets):
             continue
         unit, why = COLUMNS.get(name, ("", "not a column that is known here"))
         if name in OFFSETS:
@@ -91,8 +91,8 @@ def _each(text: Text, name: str) -> tuple[float, ...]:
 
 def _values(text: Text, names: tuple[str, ...]) -> tuple[float, ...]:
     """The finite numbers of the names that are present."""
-    named = keys(text)
-    numbers = (number(named[name.lower()][1]) for name in names if name.lower() in named)
+    entries = keys(text)
+    numbers = (number(entries[name.lower()][1]) for name in names if name.lower() in entries)
     return tuple(value for value in numbers if value is not None and math.isfinite(value))
 
 

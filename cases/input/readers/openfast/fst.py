@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ...errors import CaseError
 from ..source import Mount, Reading
-from ..text import Text, keys, load, whole, word
+from ..text import Text, integer, keys, load, word
 from . import beamdyn, elastodyn
 
 
@@ -32,21 +32,21 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         CaseError: naming the file and line at fault.
     """
     text, mount = load(path), mount or Mount()
-    named = keys(text)
+    entries = keys(text)
     if mount.main is not None:
         raise CaseError(f"{path}: --main {mount.main}: the .fst file names its main file itself: leave out --main")
-    kind = whole(text, named, "CompElast") if "compelast" in named else 1
+    kind = integer(text, entries, "CompElast") if "compelast" in entries else 1
     if kind not in (1, 2):
         raise CaseError(
-            f"{text.at(named['compelast'][0])}: CompElast: {kind}: only blades of ElastoDyn (1) and BeamDyn (2) are read"
+            f"{text.at(entries['compelast'][0])}: CompElast: {kind}: only blades of ElastoDyn (1) and BeamDyn (2) are read"
         )
     hub = file_named(text, "EDFile")
-    stated = (
+    blade_reading = (
         elastodyn.read(hub, mount)
         if kind == 1
         else beamdyn.read(file_named(text, "BDBldFile1"), replace(mount, main=hub))
     )
-    return replace(stated, source=replace(stated.source, files=(path, *stated.source.files)))
+    return replace(blade_reading, source=replace(blade_reading.source, files=(path, *blade_reading.source.files)))
 
 
 def file_named(text: Text, name: str) -> Path:
@@ -55,9 +55,9 @@ def file_named(text: Text, name: str) -> Path:
     Raises:
         CaseError: if it is missing, or no file is there.
     """
-    named = keys(text)
-    path = text.path.parent / word(text, named, name, name.rstrip("1")).replace("\\", "/")
+    entries = keys(text)
+    path = text.path.parent / word(text, entries, name, name.rstrip("1")).replace("\\", "/")
     if not os.path.isfile(path):  # also False for an invalid name
-        line = named[name.lower() if name.lower() in named else name.rstrip("1").lower()][0]
+        line = entries[name.lower() if name.lower() in entries else name.rstrip("1").lower()][0]
         raise CaseError(f"{text.at(line)}: {name}: {path}: no such file: correct the name, or put the file there")
     return path

@@ -72,13 +72,13 @@ def of_tower(text: Text) -> dict[str, Shape]:
 
 
 def _shapes(text: Text, names: dict[str, str], damping: dict[str, str], tuners: dict[str, str]) -> dict[str, Shape]:
-    named = keys(text)
+    entries = keys(text)
     out: dict[str, Shape] = {}
     for motion, name in names.items():
         numbered = [f"{name}{k}" for k in range(2, 7)]
-        if not all(each.lower() in named for each in numbered):
+        if not all(key.lower() in entries for key in numbered):
             continue
-        coefficients = np.array([value(text, named, each) for each in numbered])
+        coefficients = np.array([value(text, entries, key) for key in numbered])
         if abs(coefficients.sum()) < 1e-6:
             raise CaseError(f"{text.path}: {name}: the coefficients sum to 0, but a shape is 1 at its end: correct one")
         out[motion] = Shape(

@@ -14,7 +14,7 @@ import numpy as np
 from .....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from ...errors import CaseError
 from ..source import Mount, Source, TurbineReading, Unused, unused
-from ..text import Text, keys, load, value, whole
+from ..text import Text, integer, keys, load, value
 from . import elastodyn_hub as hubs
 from . import elastodyn_tower as tower_reader
 from . import fst
@@ -23,7 +23,7 @@ from .elastodyn_hub import body, flag, number_or
 NAME = "OpenFAST turbine"
 AXES = "nacelle: x downwind, y to port, z up; here x = its z, y = its −y, z = its x"
 
-Named = dict[str, tuple[int, str]]
+Entries = dict[str, tuple[int, str]]
 
 GROUND = "rigid ground: platform and water are not included"
 FLOATER = f"{GROUND}; a TOML file with the keys openfast and support gives them as 6×6"
@@ -48,7 +48,7 @@ def is_turbine(path: Path) -> bool:
         if not fst.matches_format(text):
             return False
         main = load(fst.file_named(text, "EDFile"))
-        return tower_reader.tower_file(main).is_file() and whole(main, keys(main), "NumBl") >= 2
+        return tower_reader.tower_file(main).is_file() and integer(main, keys(main), "NumBl") >= 2
     except (CaseError, OSError):
         return False
 
@@ -65,28 +65,28 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     """
     primary = load(path)
     main = load(fst.file_named(primary, "EDFile"))
-    named = keys(main)
+    entries = keys(main)
     blade = fst.read(path, mount)
     tower_text = load(tower_reader.tower_file(main))
-    blades = whole(main, named, "NumBl")
-    hinge, undersling, hinge_note = hubs.teeter(main, named) if blades == 2 else (None, 0.0, ())
+    blades = integer(main, entries, "NumBl")
+    hinge, undersling, hinge_note = hubs.teeter(main, entries) if blades == 2 else (None, 0.0, ())
     tower, tower_notes = tower_reader.beam(tower_text, tower_reader.tower_height(main))
-    yaw, yaw_note, servo = _yaw(primary, main, named)
-    stiffness = value(main, named, "DTTorSpr") if flag(main, named, "DrTrDOF") else np.inf
-    free = flag(main, named, "GenDOF")
-    drivetrain = Drivetrain(stiffness, value(main, named, "GenIner"), value(main, named, "GBRatio"), free)
+    yaw, yaw_note, servo = _yaw(primary, main, entries)
+    stiffness = value(main, entries, "DTTorSpr") if flag(main, entries, "DrTrDOF") else np.inf
+    free = flag(main, entries, "GenDOF")
+    drivetrain = Drivetrain(stiffness, value(main, entries, "GenIner"), value(main, entries, "GBRatio"), free)
     gravity = number_or(primary, "Gravity", number_or(main, "Gravity", 9.80665))
     turbine = Turbine(
         name=path.stem,
         tower=tower,
         blade=blade.blade,
         blades=blades,
-        nacelle=_nacelle(main, named),
-        hub=hubs.hub(main, named) if blades > 2 else hubs.hub_of_two(main, named, undersling),
+        nacelle=_nacelle(main, entries),
+        hub=hubs.hub(main, entries) if blades > 2 else hubs.hub_of_two(main, entries, undersling),
         shaft=shaft_pose(
-            value(main, named, "Twr2Shft"),
-            value(main, named, "OverHang") - undersling,
-            np.radians(value(main, named, "ShftTilt")),
+            value(main, entries, "Twr2Shft"),
+            value(main, entries, "OverHang") - undersling,
+            np.radians(value(main, entries, "ShftTilt")),
         ),
         yaw=yaw,
         drivetrain=drivetrain,
@@ -106,7 +106,7 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     )
     unused_values = (
         *_below(primary),
-        *_unused(main, named),
+        *_unused(main, entries),
         *_yaw_damping(servo),
         *tower_reader.of_tower(tower_text),
         *hubs.without_hinge(blade.source.unused, hinge),
@@ -116,25 +116,25 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     return TurbineReading(turbine, Source(NAME, files, AXES, notes, unused_values), float(speed))
 
 
-def _nacelle(main: Text, named: Named) -> np.ndarray:
+def _nacelle(main: Text, entries: Entries) -> np.ndarray:
     """(6, 6) inertia of nacelle and yaw bearing at the tower's top, in the tower's axes."""
-    mass = value(main, named, "NacMass")
-    x, y, z = (value(main, named, name) for name in ("NacCMxn", "NacCMyn", "NacCMzn"))
-    about_yaw = value(main, named, "NacYIner")
-    own = about_yaw - mass * (x**2 + y**2)
-    if own < 0:
+    mass = value(main, entries, "NacMass")
+    x, y, z = (value(main, entries, name) for name in ("NacCMxn", "NacCMyn", "NacCMzn"))
+    about_yaw = value(main, entries, "NacYIner")
+    about_centre = about_yaw - mass * (x**2 + y**2)
+    if about_centre < 0:
         raise CaseError(
-            f"{main.at(named['nacyiner'][0])}: NacYIner: {about_yaw:g}: less than NacMass at its distance from the yaw axis, "
+            f"{main.at(entries['nacyiner'][0])}: NacYIner: {about_yaw:g}: less than NacMass at its distance from the yaw axis, "
             f"{mass * (x**2 + y**2):g} kg m²: it is about the yaw axis; correct one"
         )
-    out = body(mass, np.array([own, 0.0, 0.0]), np.array([z, -y, x]))
+    out = body(mass, np.array([about_centre, 0.0, 0.0]), np.array([z, -y, x]))
     out[:3, :3] += number_or(main, "YawBrMass", 0.0) * np.eye(3)
     return out
 
 
-def _yaw(primary: Text, main: Text, named: Named) -> tuple[float, str, tuple[Path, ...]]:
+def _yaw(primary: Text, main: Text, entries: Entries) -> tuple[float, str, tuple[Path, ...]]:
     """Stiffness of the yaw bearing, N m/rad, a note on it, and the file that states it."""
-    if not flag(main, named, "YawDOF"):
+    if not flag(main, entries, "YawDOF"):
         return np.inf, "yaw bearing locked (YawDOF is False)", ()
     servo = keys(primary).get("servofile")
     path = primary.path.parent / servo[1].replace("\\", "/") if servo else None
@@ -149,8 +149,8 @@ def _yaw(primary: Text, main: Text, named: Named) -> tuple[float, str, tuple[Pat
 
 def _below(primary: Text) -> tuple[Unused, ...]:
     """Modules of the primary file that the turbine does not use."""
-    used = [name for name in MODULES if number_or(primary, name, 0.0)]
-    return unused(", ".join(used), [number_or(primary, name, 0.0) for name in used], "", primary.path, FLOATER)
+    active = [name for name in MODULES if number_or(primary, name, 0.0)]
+    return unused(", ".join(active), [number_or(primary, name, 0.0) for name in active], "", primary.path, FLOATER)
 
 
 def _yaw_damping(servo: tuple[Path, ...]) -> tuple[Unused, ...]:
@@ -159,17 +159,17 @@ def _yaw_damping(servo: tuple[Path, ...]) -> tuple[Unused, ...]:
     return tuple(u for path, damping in of for u in unused("YawDamp", [damping], "N m s/rad", path, UNDAMPED))
 
 
-def _unused(main: Text, named: Named) -> tuple[Unused, ...]:
+def _unused(main: Text, entries: Entries) -> tuple[Unused, ...]:
     """Non-zero quantities of the main file that the turbine does not use."""
     out: list[Unused] = []
     for name, unit in DAMPING.items():
         out += unused(name, [number_or(main, name, 0.0)], unit, main.path, UNDAMPED)
-    free = [name for name in PLATFORM if flag(main, named, name)]
+    free = [name for name in PLATFORM if flag(main, entries, name)]
     if free:
         out += unused(", ".join(free), [1.0] * len(free), "", main.path, FLOATER)
         for name, unit in INERTIA.items():
             out += unused(name, [number_or(main, name, 0.0)], unit, main.path, FLOATER)
     out += unused("NacYaw", [number_or(main, "NacYaw", 0.0)], "deg", main.path, "the nacelle faces the wind")
-    if flag(main, named, "Furling"):
+    if flag(main, entries, "Furling"):
         out += unused("Furling", [1.0], "", main.path, "furling is not included")
     return tuple(out)
