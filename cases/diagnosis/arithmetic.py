@@ -44,64 +44,68 @@ class Arithmetic:
     """A conversion: its name, and the (S, M) frequencies of the program (rad/s) and of the solver that correspond with it."""
 
     name: str
-    given: Array
+    frequencies: Array
     reference: Array
 
 
-def arithmetic(given: Array, reference: Array, labels: Sequence[Label], every: Sequence[Array]) -> Arithmetic:
+def arithmetic(
+    frequencies: Array, reference: Array, labels: Sequence[Label], all_frequencies: Sequence[Array]
+) -> Arithmetic:
     """The best conversion; its name is empty if none removes nearly all of the difference.
 
     Args:
-        given: (S, M) frequencies of a program, nan where unknown.
+        frequencies: (S, M) frequencies of a program, nan where unknown.
         reference: (S, M) the solver's, under the same labels.
         labels: (M,) of the modes.
-        every: S arrays of all frequencies of the solver, ascending.
+        all_frequencies: S arrays of all frequencies of the solver, ascending.
     """
-    plain = Arithmetic("", given, reference)
+    plain = Arithmetic("", frequencies, reference)
     start = _size(plain)
     if not start >= LARGE:
         return plain
     candidates = [
-        Arithmetic(", ".join(filter(None, (unit, order))), converted, other)
-        for unit, converted in _units(given)
-        for order, other in _orders(converted, reference, labels, every)
+        Arithmetic(", ".join(filter(None, (unit, order))), converted, reordered)
+        for unit, converted in _units(frequencies)
+        for order, reordered in _orders(converted, reference, labels, all_frequencies)
     ]
     best = min(candidates[1:], key=lambda candidate: _size(candidate) * (1.5 if "," in candidate.name else 1.0))
     return best if _size(best) <= min(REMAINS * start, CLOSE) else plain
 
 
-def difference(given: Array, reference: Array) -> Array:
+def difference(frequencies: Array, reference: Array) -> Array:
     """(S, M) logarithms of the ratios; nan where one is unknown."""
     with np.errstate(all="ignore"):
-        return np.log(given / reference)
+        return np.log(frequencies / reference)
 
 
 def _size(candidate: Arithmetic) -> float:
     """Root mean square of the difference; infinite if fewer numbers can be compared."""
-    values = difference(candidate.given, candidate.reference)[np.isfinite(candidate.given)]
+    values = difference(candidate.frequencies, candidate.reference)[np.isfinite(candidate.frequencies)]
     return float(np.sqrt(np.mean(values**2))) if len(values) and np.isfinite(values).all() else np.inf
 
 
-def _units(given: Array) -> list[tuple[str, Array]]:
+def _units(frequencies: Array) -> list[tuple[str, Array]]:
     """The numbers as they are, divided by constants, and as squares."""
-    out = [("", given)]
-    out += [(f"constant ratio {name}", given / value) for name, value in CONSTANTS.items()]
-    out.append(("squared frequencies, (rad/s)²", np.sqrt(given)))
-    out.append(("squared frequencies, Hz²", 2.0 * np.pi * np.sqrt(given)))
+    out = [("", frequencies)]
+    out += [(f"constant ratio {name}", frequencies / value) for name, value in CONSTANTS.items()]
+    out.append(("squared frequencies, (rad/s)²", np.sqrt(frequencies)))
+    out.append(("squared frequencies, Hz²", 2.0 * np.pi * np.sqrt(frequencies)))
     return out
 
 
-def _orders(given: Array, reference: Array, labels: Sequence[Label], every: Sequence[Array]) -> list[tuple[str, Array]]:
+def _orders(
+    frequencies: Array, reference: Array, labels: Sequence[Label], all_frequencies: Sequence[Array]
+) -> list[tuple[str, Array]]:
     """The reference in other orders of the modes, of which the program may have another one, twice as many or a part."""
     out = [("", reference)]
     with np.errstate(all="ignore"):
-        away = np.abs(np.log(given[:, :, None] / reference[:, None, :]))
-        cost = np.nansum(away, axis=0) / (~np.isnan(away)).sum(axis=0)
+        distance = np.abs(np.log(frequencies[:, :, None] / reference[:, None, :]))
+        cost = np.nansum(distance, axis=0) / (~np.isnan(distance)).sum(axis=0)
     if np.isfinite(cost).all() and len(labels) > 1:
         _, order = linear_sum_assignment(cost)
-        moved = [k for k, other in enumerate(order.tolist()) if k != other]
-        if moved:
-            name = "modes in another order: " + ", ".join(f"{labels[k]} is {labels[order[k]]}" for k in moved)
+        exchanged = [k for k, partner in enumerate(order.tolist()) if k != partner]
+        if exchanged:
+            name = "modes in another order: " + ", ".join(f"{labels[k]} is {labels[order[k]]}" for k in exchanged)
             out.append((name, reference[:, order]))
     if all(isinstance(label, int) for label in labels):
         numbers = np.array(labels, dtype=int) - 1
@@ -112,14 +116,14 @@ def _orders(given: Array, reference: Array, labels: Sequence[Label], every: Sequ
             "the first mode is missing": lambda k: k + 1,
             "one more mode below the first": lambda k: k - 1,
         }
-        out += [(name, _taken(every, rule(numbers))) for name, rule in rules.items()]
+        out += [(name, _taken(all_frequencies, rule(numbers))) for name, rule in rules.items()]
     return out
 
 
-def _taken(every: Sequence[Array], places: NDArray[np.int64]) -> Array:
+def _taken(all_frequencies: Sequence[Array], places: NDArray[np.int64]) -> Array:
     """(S, M) frequencies with these indices among all; nan beyond the last."""
-    out = np.full((len(every), len(places)), np.nan)
-    for row, values in zip(out, every, strict=True):
+    out = np.full((len(all_frequencies), len(places)), np.nan)
+    for row, values in zip(out, all_frequencies, strict=True):
         inside = (places >= 0) & (places < len(values))
         row[inside] = values[places[inside]]
     return out

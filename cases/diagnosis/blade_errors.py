@@ -80,9 +80,9 @@ def scaled_coupling(factor: float) -> Alteration:
 
     def alter(blade: Blade) -> Blade:
         stiffness = blade.stiffness.copy()
-        others = [k for k in range(6) if k != TORSION]
-        stiffness[:, TORSION, others] *= factor
-        stiffness[:, others, TORSION] *= factor
+        coupled_strains = [k for k in range(6) if k != TORSION]
+        stiffness[:, TORSION, coupled_strains] *= factor
+        stiffness[:, coupled_strains, TORSION] *= factor
         return replace(blade, stiffness=stiffness)
 
     return alter
@@ -174,8 +174,8 @@ def stepwise(weight: float) -> Alteration:
         if not straight(blade) or len(blade.stations) < 3:
             return blade
         s = blade.stations
-        beyond = s[1:-1] + STEP * np.minimum(np.diff(s)[:-1], np.diff(s)[1:])
-        stations = np.sort(np.concatenate([s, beyond]))
+        next_stations = s[1:-1] + STEP * np.minimum(np.diff(s)[:-1], np.diff(s)[1:])
+        stations = np.sort(np.concatenate([s, next_stations]))
 
         def steps(values: Array) -> Array:
             finite = np.where(np.isinf(values), 0.0, values)

@@ -21,8 +21,8 @@ def is_due(cells: Sequence[Cell], added: bool) -> bool:
 
 def _frequencies(cells: Sequence[Cell]) -> list[Cell]:
     """The cells of a code with a frequency that depends on nothing but the rotor speed."""
-    some = (cell for cell in cells if cell.role == "code" and cell.quantity == "frequency" and not cell.where)
-    return [cell for cell in some if cell.mode and cell.value]
+    candidates = (cell for cell in cells if cell.role == "code" and cell.quantity == "frequency" and not cell.where)
+    return [cell for cell in candidates if cell.mode and cell.value]
 
 
 def diagnosed(blade: Blade, cells: Sequence[Cell], deck: BladeFile | None = None) -> Diagnosed:
@@ -33,12 +33,12 @@ def diagnosed(blade: Blade, cells: Sequence[Cell], deck: BladeFile | None = None
     answered = _frequencies(cells)
     speeds = sorted({cell.omega for cell in answered})
     names = sorted({cell.name for cell in answered})
-    given = np.full((len(speeds), len(names)), np.nan)
+    frequencies = np.full((len(speeds), len(names)), np.nan)
     for cell in answered:
-        given[speeds.index(cell.omega), names.index(cell.name)] = cell.value
+        frequencies[speeds.index(cell.omega), names.index(cell.name)] = cell.value
     uncertainties = [cell.uncertainty for cell in answered if cell.uncertainty is not None]
     uncertainty = float(np.clip(np.median(uncertainties), LEAST, MOST)) if uncertainties else LEAST
-    diagnosis = diagnose(blade, speeds, given, names, by_shape=True, uncertainty=uncertainty, deck=deck)
+    diagnosis = diagnose(blade, speeds, frequencies, names, by_shape=True, uncertainty=uncertainty, deck=deck)
     return Diagnosed(
         case=cells[0].case,
         code=cells[0].code,

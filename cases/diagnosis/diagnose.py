@@ -79,8 +79,9 @@ class Diagnosis:
             end = f"all frequencies agree within {percent(self.largest)}"
             return f"{first}{end}" if first else end
         if self.cause:
-            others = "".join(f"; or {described(cause.changes)}" for cause in self.ties)
-            return f"{first}as Southwell's own solver {described(self.cause.changes)} ({self._remainder(self.cause)}){others}"
+            alternatives = "".join(f"; or {described(cause.changes)}" for cause in self.ties)
+            changes = f"{described(self.cause.changes)} ({self._remainder(self.cause)})"
+        return f"{first}as Southwell's own solver {changes}{alternatives}"
         hint = f"; {self.indication}" if self.indication else ""
         return f"{first}no known cause of {percent(self.largest)}{hint}"
 
@@ -119,16 +120,16 @@ def diagnose(
         ValueError: arrays of other shapes, or nothing to compare.
         CaseError: the deck cannot be read.
     """
-    omega, given = np.asarray(speeds, float), np.atleast_2d(np.asarray(frequencies, float))
-    labels = tuple(modes) if modes is not None else tuple(range(1, given.shape[-1] + 1))
-    if given.shape != (len(omega), len(labels)):
-        raise ValueError(f"frequencies: shape {given.shape}, expected {(len(omega), len(labels))}: speeds × modes")
-    if not np.isfinite(given).any():
+    omega, values = np.asarray(speeds, float), np.atleast_2d(np.asarray(frequencies, float))
+    labels = tuple(modes) if modes is not None else tuple(range(1, values.shape[-1] + 1))
+    if values.shape != (len(omega), len(labels)):
+        raise ValueError(f"frequencies: shape {values.shape}, expected {(len(omega), len(labels))}: speeds × modes")
+    if not np.isfinite(values).any():
         raise ValueError("frequencies: none is finite")
-    rows = _rows(omega, given)
+    rows = _rows(omega, values)
     kinds = ALL if deck is None else (*decks.hypotheses(_file(deck), blade), *ALL)
     problem = Problem(blade, tuple(omega[rows].tolist()), labels, by_shape, {kind.name: kind for kind in kinds})
-    return explain(problem, given[rows], uncertainty)
+    return explain(problem, values[rows], uncertainty)
 
 
 def _file(deck: str | Path | BladeFile) -> BladeFile:
@@ -138,20 +139,20 @@ def _file(deck: str | Path | BladeFile) -> BladeFile:
     return BladeFile(Path(deck), reading.blade, reading.source, Mount())
 
 
-def explain(problem: Problem, given: Array, uncertainty: float = UNCERTAINTY) -> Diagnosis:
+def explain(problem: Problem, frequencies: Array, uncertainty: float = UNCERTAINTY) -> Diagnosis:
     """As ``diagnose``, for frequencies (S, M) at all speeds of a problem, whose solutions are kept for other numbers."""
     reference = spectra.reference(problem)
-    given = np.where(np.isfinite(reference) & (given > 0), given, np.nan)
-    if not np.isfinite(given).any():
+    frequencies = np.where(np.isfinite(reference) & (frequencies > 0), frequencies, np.nan)
+    if not np.isfinite(frequencies).any():
         return Diagnosis(np.nan, uncertainty, "", (), "", (), (), ())
-    every = [
+    all_frequencies = [
         spectrum.frequencies if spectrum else np.zeros(0) for spectrum in spectra.solved(problem, (), spectra.FINE)
     ]
-    converted = arithmetic(given, reference, problem.labels, every)
-    D = difference(converted.given, converted.reference)
+    converted = arithmetic(frequencies, reference, problem.labels, all_frequencies)
+    D = difference(converted.frequencies, converted.reference)
     largest = float(np.nanmax(np.abs(np.expm1(D))))
-    named = _names(problem, converted.reference)
-    parts = split(named, np.array(problem.speeds), converted.given, converted.reference)
+    mode_names = _names(problem, converted.reference)
+    parts = split(mode_names, np.array(problem.speeds), converted.frequencies, converted.reference)
     hint = indication(parts, max(map(abs, problem.speeds)), uncertainty)
     if largest <= 3.0 * uncertainty or (converted.name and not _same_modes(converted.reference, reference)):
         return Diagnosis(largest, uncertainty, converted.name, parts, hint, (), (), ())
@@ -168,9 +169,9 @@ def explain(problem: Problem, given: Array, uncertainty: float = UNCERTAINTY) ->
     )
 
 
-def _rows(omega: Array, given: Array) -> list[int]:
+def _rows(omega: Array, frequencies: Array) -> list[int]:
     """Rows to solve: those with most numbers, evenly distributed over the speeds."""
-    rows = np.flatnonzero(np.isfinite(given).any(1))
+    rows = np.flatnonzero(np.isfinite(frequencies).any(1))
     rows = rows[np.argsort(omega[rows], kind="stable")]
     if len(rows) > MAX_SPEEDS:
         targets = np.linspace(omega[rows[0]], omega[rows[-1]], MAX_SPEEDS)
@@ -181,13 +182,15 @@ def _rows(omega: Array, given: Array) -> list[int]:
 def _names(problem: Problem, reference: Array) -> list[list[str]]:
     """(S × M) names of the solver's modes with these frequencies."""
     out = []
-    for row, (spectrum, named) in enumerate(
+    for row, (spectrum, names_at_speed) in enumerate(
         zip(spectra.solved(problem, (), spectra.FINE), spectra.names(problem), strict=True)
     ):
         line = []
         for value in reference[row]:
             line.append(
-                named[int(np.abs(spectrum.frequencies - value).argmin())] if spectrum and np.isfinite(value) else ""
+                names_at_speed[int(np.abs(spectrum.frequencies - value).argmin())]
+                if spectrum and np.isfinite(value)
+                else ""
             )
         out.append(line)
     return out
@@ -231,6 +234,6 @@ def mode_lines(diagnosis: Diagnosis) -> tuple[str, ...]:
 
 
 def _split(mode: ModeSplit) -> str:
-    rest = f"at rest {100.0 * mode.offset:+.3f} %"
+    at_rest = f"at rest {100.0 * mode.offset:+.3f} %"
     slope = f", φ {mode.slope:.4g} instead of {mode.slope_reference:.4g}" if np.isfinite(mode.slope) else ""
-    return f"{rest}{slope}".replace("-", "−")
+    return f"{at_rest}{slope}".replace("-", "−")

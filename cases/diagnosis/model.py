@@ -93,15 +93,15 @@ def solve(model: Model, speeds: Sequence[float], count: int, elements: int = ELE
         lumps = mesh.lumps.copy()
         lumps[-1] += lumps[-1] - blade.tip_mass
         mesh = replace(mesh, lumps=lumps)
-    turned = [model.speed * omega for omega in speeds]
+    rotor_speeds = [model.speed * omega for omega in speeds]
     with one_thread(), np.errstate(all="ignore"):
         if model.slow:
-            return _extrapolated(mesh, model, turned, count)
+            return _extrapolated(mesh, model, rotor_speeds, count)
         if model.assumed:
-            return _assumed(mesh, model, model.assumed, turned)
+            return _assumed(mesh, model, model.assumed, rotor_speeds)
         if model.basis or model.two_node or model.following:
-            return _restricted(mesh, model, turned, count)
-        return list(_swept(mesh, model, turned, count))
+            return _restricted(mesh, model, rotor_speeds, count)
+        return list(_swept(mesh, model, rotor_speeds, count))
 
 
 def _swept(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> Iterator[Modes | None]:
@@ -166,10 +166,10 @@ def _lowest(mesh: Mesh, count: int) -> Array:
 
     The coordinates are differences of twists along the blade, so that the basis includes the shortening of a bent blade.
     """
-    rest = mesh_solver.solve(mesh, 0.0, Options(count))
-    phase = np.exp(-1j * np.angle(rest.vectors[np.abs(rest.vectors).argmax(0), range(rest.vectors.shape[1])]))
-    basis = (rest.vectors * phase).real.T
-    p = rest.state.pencil
+    at_rest = mesh_solver.solve(mesh, 0.0, Options(count))
+    phase = np.exp(-1j * np.angle(at_rest.vectors[np.abs(at_rest.vectors).argmax(0), range(at_rest.vectors.shape[1])]))
+    basis = (at_rest.vectors * phase).real.T
+    p = at_rest.state.pencil
     return basis / np.sqrt(np.einsum("mi,mi->m", basis, product(p.M, 1.0, p.links, basis)))[:, None]
 
 
@@ -209,20 +209,20 @@ def _assumed(mesh: Mesh, model: Model, assumed: AssumedShapes, speeds: Sequence[
 def _extrapolated(mesh: Mesh, model: Model, speeds: Sequence[float], count: int) -> list[Modes | None]:
     """Southwell's equation with the coefficients at a low speed, in the order of the frequencies."""
     try:
-        rest, *_ = _swept(mesh, replace(model, softening=1.0), [0.0], count)
-        if rest is None:
+        at_rest, *_ = _swept(mesh, replace(model, softening=1.0), [0.0], count)
+        if at_rest is None:
             return [None] * len(speeds)
-        low = SLOW * float(rest.frequencies[0])
-        (moved,) = _swept(mesh, model, [low], count)
+        low = SLOW * float(at_rest.frequencies[0])
+        (at_low_speed,) = _swept(mesh, model, [low], count)
     except NO_ANSWER:
         return [None] * len(speeds)
-    if moved is None:
+    if at_low_speed is None:
         return [None] * len(speeds)
-    slope = (moved.frequencies**2 - rest.frequencies**2) / low**2
+    slope = (at_low_speed.frequencies**2 - at_rest.frequencies**2) / low**2
     out: list[Modes | None] = []
     for omega in speeds:
-        square = rest.frequencies**2 + slope * omega**2
+        square = at_rest.frequencies**2 + slope * omega**2
         order = np.argsort(square)
         lowest = np.sqrt(np.maximum(square[order], 0.0))
-        out.append(Modes(omega, lowest, moved.shapes[order], mesh.elements))
+        out.append(Modes(omega, lowest, at_low_speed.shapes[order], mesh.elements))
     return out

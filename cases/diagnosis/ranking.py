@@ -111,14 +111,14 @@ def chance(share: float, dimensions: int, kinds: int, fitted: int = 0) -> float:
     return min(1.0, kinds * probability)
 
 
-def rank(problem: Problem, difference: Array, uncertainty: float, shown: int = 5) -> Ranking:
+def rank(problem: Problem, difference: Array, uncertainty: float, limit: int = 5) -> Ranking:
     """Rank single hypotheses, those with a fitted factor, and, if more remains than the uncertainty, pairs.
 
     Args:
         problem: the blade, speeds and modes.
         difference: (S, M) logarithms of the ratios of the program's frequencies to the solver's; nan where unknown.
         uncertainty: relative; differences up to this need no cause.
-        shown: number of causes returned.
+        limit: number of causes returned.
     """
     search = _Search(problem, difference, uncertainty)
     single, invisible = search.fixed()
@@ -132,7 +132,7 @@ def rank(problem: Problem, difference: Array, uncertainty: float, shown: int = 5
             causes += search.pairs(single, slopes)
     best = _ordered(causes)
     ties = tuple(cause for cause in best[1:] if cause.named and search.is_tied(cause, best[0])) if best else ()
-    return Ranking(tuple(best[:shown]), ties, tuple(invisible))
+    return Ranking(tuple(best[:limit]), ties, tuple(invisible))
 
 
 def _ordered(causes: Sequence[Cause]) -> list[Cause]:
@@ -162,7 +162,7 @@ class _Search:
                 continue
             if not self.is_visible(prediction):
                 invisible.append(name)
-            elif not any(np.abs((prediction - other)[finite]).max() <= EQUAL for other in visible.values()):
+            elif not any(np.abs((prediction - explanation)[finite]).max() <= EQUAL for explanation in visible.values()):
                 visible[name] = prediction
         return visible, invisible
 
@@ -170,17 +170,17 @@ class _Search:
         """What one hypothesis, or several together, explain."""
         prediction = effect(self.problem, changes)
         finite = np.isfinite(self.difference)
-        rest = (self.difference - prediction)[finite]
+        remainder = (self.difference - prediction)[finite]
         size = float((self.difference[finite] ** 2).sum())
-        if not np.isfinite(rest).all() or not size:
+        if not np.isfinite(remainder).all() or not size:
             return Cause(changes, 0.0, np.inf, np.inf, 1.0, prediction)
-        least = finite.sum() * self.uncertainty**2
-        share = float(max((rest**2).sum(), least)) / size
+        floor = finite.sum() * self.uncertainty**2
+        share = float(max((remainder**2).sum(), floor)) / size
         return Cause(
             changes=changes,
-            explained=1.0 - float((rest**2).sum()) / size,
-            remains=float(np.abs(rest).max()),
-            rms=float(np.sqrt((rest**2).mean())),
+            explained=1.0 - float((remainder**2).sum()) / size,
+            remains=float(np.abs(remainder).max()),
+            rms=float(np.sqrt((remainder**2).mean())),
             chance=chance(share, freedom(self.difference), kinds, fitted),
             prediction=prediction,
         )
@@ -190,14 +190,14 @@ class _Search:
         best = min((cause.rms for cause in causes if cause.named), default=np.inf)
         return best <= NOISE * self.uncertainty
 
-    def fitted(self, changes: tuple[Change, ...], slopes: dict[str, Array], tried: int) -> list[Cause]:
+    def fitted(self, changes: tuple[Change, ...], slopes: dict[str, Array], limit: int) -> list[Cause]:
         """Causes with a factor: those that explain most to first order, with the factor refined."""
         finite = np.isfinite(self.difference)
         D = self.difference[finite]
         squares = {name: _remainder(D, slope[finite]) for name, slope in slopes.items()}
-        best = sorted(squares, key=lambda name: squares[name])[:tried]
-        chosen = best[:1] + [name for name in best[1:] if self._is_promising(squares[name], len(slopes), 1)]
-        return [self._refined(changes, name, slopes[name], len(slopes)) for name in chosen]
+        best = sorted(squares, key=lambda name: squares[name])[:limit]
+        promising = best[:1] + [name for name in best[1:] if self._is_promising(squares[name], len(slopes), 1)]
+        return [self._refined(changes, name, slopes[name], len(slopes)) for name in promising]
 
     def _is_promising(self, square: float, kinds: int, fitted: int = 0) -> bool:
         size = float((self.difference[np.isfinite(self.difference)] ** 2).sum())
@@ -210,8 +210,8 @@ class _Search:
         begin = effect(self.problem, changes) if changes else np.zeros_like(slope)
         prediction = begin
         for _ in range(FITS):
-            rest = (self.difference - prediction)[finite]
-            a += float(rest @ slope[finite] / (slope[finite] @ slope[finite]))
+            remainder = (self.difference - prediction)[finite]
+            a += float(remainder @ slope[finite] / (slope[finite] @ slope[finite]))
             if not 1e-6 < abs(a) <= np.log(MAX_FACTOR):
                 break
             cause = self.cause((*changes, (name, float(np.exp(a)))), kinds, fitted=1)
@@ -225,12 +225,14 @@ class _Search:
         """Pairs that explain most if their effects are added, solved together."""
         finite = np.isfinite(self.difference)
         D = self.difference[finite]
-        every = {
+        squares = {
             (a, b): float(((D - single[a][finite] - single[b][finite]) ** 2).sum()) for a, b in combinations(single, 2)
         }
-        best = sorted(every, key=lambda names: every[names])[:TRIED_PAIRS]
+        best = sorted(squares, key=lambda names: squares[names])[:TRIED_PAIRS]
         out = [
-            self.cause(((a, 1.0), (b, 1.0)), len(every)) for a, b in best if self._is_promising(every[a, b], len(every))
+            self.cause(((a, 1.0), (b, 1.0)), len(squares))
+            for a, b in best
+            if self._is_promising(squares[a, b], len(squares))
         ]
         mixed = {
             (name, factor): _remainder(D - prediction[finite], slope[finite])
@@ -256,6 +258,6 @@ def _is_fixed(cause: Cause) -> bool:
     return all(factor == 1.0 for _, factor in cause.changes)
 
 
-def _remainder(rest: Array, slope: Array) -> float:
-    """Sum of squares that remains of ``rest`` after the best multiple of ``slope``."""
-    return float(rest @ rest - (rest @ slope) ** 2 / (slope @ slope))
+def _remainder(difference: Array, slope: Array) -> float:
+    """Sum of squares that remains of ``difference`` after the best multiple of ``slope``."""
+    return float(difference @ difference - (difference @ slope) ** 2 / (slope @ slope))

@@ -74,21 +74,21 @@ def effect(problem: Problem, changes: tuple[Change, ...]) -> Array:
 
 @lru_cache(maxsize=4096)
 def _effect(problem: Problem, changes: tuple[Change, ...]) -> Array:
-    changed = changed_model(problem, changes)
-    if changed is None:
+    altered_model = changed_model(problem, changes)
+    if altered_model is None:
         return np.full((len(problem.speeds), len(problem.labels)), np.nan)
-    if _unchanged(changed, Model(problem.blade)):
+    if _unchanged(altered_model, Model(problem.blade)):
         return np.zeros((len(problem.speeds), len(problem.labels)))
-    base = reference(problem) if changed.elements else _plain(problem)
-    wrong = labelled(problem, model.solve(changed, problem.speeds, problem.count), changed.blade)
+    base = reference(problem) if altered_model.elements else _plain(problem)
+    frequencies = labelled(problem, model.solve(altered_model, problem.speeds, problem.count), altered_model.blade)
     with np.errstate(all="ignore"):
-        return np.log(wrong / base)
+        return np.log(frequencies / base)
 
 
 def _unchanged(a: Model, b: Model) -> bool:
     """Whether two models are equal."""
-    ours, theirs = vars(a) | vars(a.blade), vars(b) | vars(b.blade)
-    same_values = (np.array_equal(ours[name], theirs[name]) for name in ours if name != "blade")
+    fields_a, fields_b = vars(a) | vars(a.blade), vars(b) | vars(b.blade)
+    same_values = (np.array_equal(fields_a[name], fields_b[name]) for name in fields_a if name != "blade")
     return all(same_values)
 
 
@@ -112,9 +112,9 @@ def changed_model(problem: Problem, changes: Sequence[Change]) -> Model | None:
 @lru_cache(maxsize=64)
 def solved(problem: Problem, changes: tuple[Change, ...], elements: int) -> list[Modes | None]:
     """The modes at each speed."""
-    changed = changed_model(problem, changes)
-    assert changed is not None
-    return model.solve(changed, problem.speeds, problem.count, elements)
+    altered_model = changed_model(problem, changes)
+    assert altered_model is not None
+    return model.solve(altered_model, problem.speeds, problem.count, elements)
 
 
 @lru_cache(maxsize=64)
@@ -138,15 +138,18 @@ def labelled(problem: Problem, answers: Sequence[Modes | None], blade: Blade) ->
             places = _partners(problem, row, own)
         else:
             places = _places(problem.labels, _named(own, blade) if by_name else ())
-        for column, place in enumerate(places):
-            if place is not None and place < len(own.frequencies):
-                out[row, column] = own.frequencies[place]
+        for column, index in enumerate(places):
+            if index is not None and index < len(own.frequencies):
+                out[row, column] = own.frequencies[index]
     return out
 
 
-def _places(labels: Sequence[Label], named: Sequence[str]) -> list[int | None]:
+def _places(labels: Sequence[Label], mode_names: Sequence[str]) -> list[int | None]:
     """Indices of labels among modes with these names; None for a name that does not occur."""
-    return [label - 1 if isinstance(label, int) else named.index(label) if label in named else None for label in labels]
+    return [
+        label - 1 if isinstance(label, int) else mode_names.index(label) if label in mode_names else None
+        for label in labels
+    ]
 
 
 def _partners(problem: Problem, row: int, own: Modes) -> list[int | None]:
@@ -154,8 +157,8 @@ def _partners(problem: Problem, row: int, own: Modes) -> list[int | None]:
     base = solved(problem, (), FINE)[row]
     if base is None:
         return [None] * len(problem.labels)
-    placed = _places(problem.labels, names(problem)[row])
-    places = [place for place in placed if place is not None and place < len(base.frequencies)]
-    ours, theirs = of_blade(base, weights(problem.blade)), of_blade(own)
-    partner = dict(zip(places, pair(ours, theirs, places, LEAST_MAC), strict=True))
-    return [partner[place].mode if place in partner else None for place in placed]
+    indices = _places(problem.labels, names(problem)[row])
+    in_range = [index for index in indices if index is not None and index < len(base.frequencies)]
+    base_spectrum, own_spectrum = of_blade(base, weights(problem.blade)), of_blade(own)
+    partner = dict(zip(in_range, pair(base_spectrum, own_spectrum, in_range, LEAST_MAC), strict=True))
+    return [partner[index].mode if index in partner else None for index in indices]

@@ -44,7 +44,7 @@ class ModeSplit:
         return self.rest / self.rest_reference - 1.0
 
 
-def split(names: Sequence[Sequence[str]], speeds: Array, given: Array, reference: Array) -> tuple[ModeSplit, ...]:
+def split(names: Sequence[Sequence[str]], speeds: Array, frequencies: Array, reference: Array) -> tuple[ModeSplit, ...]:
     """Fit the frequencies (S, M) of a program and of the solver at the same speeds (S,), rad/s.
 
     ``names`` (S × M) are those of the solver's modes, so that a mode is followed where frequencies cross.
@@ -52,19 +52,19 @@ def split(names: Sequence[Sequence[str]], speeds: Array, given: Array, reference
     tracks: dict[str, list[tuple[float, float, float]]] = {}
     for row, omega in enumerate(speeds.tolist()):
         for column, name in enumerate(names[row]):
-            ours, theirs = float(reference[row, column]), float(given[row, column])
-            if name and np.isfinite([ours, theirs]).all():
-                tracks.setdefault(name, []).append((omega, theirs, ours))
+            expected, observed = float(reference[row, column]), float(frequencies[row, column])
+            if name and np.isfinite([expected, observed]).all():
+                tracks.setdefault(name, []).append((omega, observed, expected))
     return tuple(_fit(name, np.array(points)) for name, points in tracks.items())
 
 
 def _fit(name: str, points: Array) -> ModeSplit:
-    omega, theirs, ours = points.T
+    omega, observed, expected = points.T
     if len(np.unique(omega)) == 1:
         at_rest = not omega[0]
-        return ModeSplit(name, *((theirs[0], ours[0]) if at_rest else (nan, nan)), nan, nan)
+        return ModeSplit(name, *((observed[0], expected[0]) if at_rest else (nan, nan)), nan, nan)
     values = []
-    for frequency in (theirs, ours):
+    for frequency in (observed, expected):
         weight = 1.0 / frequency**2
         powers = (0, 2, 4) if len(np.unique(omega)) > 3 else (0, 2)
         terms = np.stack([weight * omega**power for power in powers], axis=1)
@@ -91,12 +91,14 @@ def indication(modes: Sequence[ModeSplit], fastest: float, uncertainty: float) -
         return ""
     at_rest = np.array([mode.rest**2 - mode.rest_reference**2 for mode in sloped])
     turning = np.array([(mode.slope - mode.slope_reference) * fastest**2 for mode in sloped])
-    whole = np.array([mode.rest_reference**2 + max(mode.slope_reference, 0.0) * fastest**2 for mode in sloped])
-    squares = [float(((part / whole) ** 2).sum()) for part in (at_rest, turning)]
-    if max(np.abs(at_rest / whole).max(), np.abs(turning / whole).max()) <= 2.0 * uncertainty:
+    expected_squares = np.array(
+        [mode.rest_reference**2 + max(mode.slope_reference, 0.0) * fastest**2 for mode in sloped]
+    )
+    squares = [float(((part / expected_squares) ** 2).sum()) for part in (at_rest, turning)]
+    if max(np.abs(at_rest / expected_squares).max(), np.abs(turning / expected_squares).max()) <= 2.0 * uncertainty:
         return ""
     offsets = [mode.offset for mode in sloped]
-    whole_change = 0.5 * float(np.abs((at_rest + turning) / whole).max())
+    whole_change = 0.5 * float(np.abs((at_rest + turning) / expected_squares).max())
     if squares[0] >= DOMINANT * sum(squares):
         return "the difference is an offset at rest: stiffness or mass"
     if squares[1] >= DOMINANT * sum(squares) and max(map(abs, offsets)) <= SMALL * whole_change:

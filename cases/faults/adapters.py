@@ -18,14 +18,14 @@ from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 Asked = tuple[float, int, int]
 
 
-def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
+def altered_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     """The code solves a different blade."""
 
-    def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
-            return right(name, alter(blade), runs, *how)
+    def make(original: Any) -> Any:
+        def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+            return original(name, alter(blade), runs, *how)
 
-        return wrong
+        return faulty
 
     return make
 
@@ -33,28 +33,28 @@ def given(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
 def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
     """The answer is altered."""
 
-    def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
-            answers = right(name, blade, runs, *how)
+    def make(original: Any) -> Any:
+        def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+            answers = original(name, blade, runs, *how)
             return [answer if isinstance(answer, Failure) else alter(answer) for answer in answers]
 
-        return wrong
+        return faulty
 
     return make
 
 
-def asked(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
+def altered_question(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
     """A different question is asked; the answer claims to be for the original one."""
 
-    def make(right: Any) -> Any:
-        def wrong(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
-            answers = right(name, blade, [alter(run) for run in runs], *how)
+    def make(original: Any) -> Any:
+        def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+            answers = original(name, blade, [alter(run) for run in runs], *how)
             return [
                 answer if isinstance(answer, Failure) else replace(answer, omega=run[0], elements=run[1])
                 for run, answer in zip(runs, answers, strict=True)
             ]
 
-        return wrong
+        return faulty
 
     return make
 
@@ -91,8 +91,8 @@ def _wide(modes: Modes) -> Modes:
 def _found_at(path: str, code: str = "exact-beam") -> Callable[[Any], Any]:
     """The adapter of a code is replaced by another."""
 
-    def make(right: Any) -> Any:
-        return lambda name: path if name == code else right(name)
+    def make(original: Any) -> Any:
+        return lambda name: path if name == code else original(name)
 
     return make
 
@@ -103,8 +103,8 @@ def _crashes(_: Any) -> Any:
     )
 
 
-def _adapter(name: str, what: str, size: str, make: Any, trial: Trial = PARK) -> Fault:
-    return Fault(name, "adapter", what, size, ((works, "answers", make),), trial)
+def _adapter(name: str, description: str, size: str, make: Any, trial: Trial = PARK) -> Fault:
+    return Fault(name, "adapter", description, size, ((works, "answers", make),), trial)
 
 
 REST = Trial("park-cantilever", (0.0,), ("exact-beam",))
@@ -122,32 +122,32 @@ FAULTS = (
     _adapter("lost column", "the flapwise column of every shape is lost", "no frequency; no partner", answered(_without(2))),
     _adapter("swapped modes", "shapes are paired with other frequencies", "factor 6", answered(_shuffled)),
     _adapter("too few modes", "the code returns two modes for any request", "no answer",
-             asked(lambda run: (run[0], run[1], 2))),
+             altered_question(lambda run: (run[0], run[1], 2))),
     _adapter("coarse declared fine", "three terms for any requested refinement", "third modes by several percent",
-             asked(lambda run: (run[0], 3, min(run[2], 4)))),
+             altered_question(lambda run: (run[0], 3, min(run[2], 4)))),
     _adapter("no rotation", "the rotor speed does not reach the code", "flapwise −10 %",
-             asked(lambda run: (0.0, *run[1:]))),
+             altered_question(lambda run: (0.0, *run[1:]))),
     _adapter("speed in rpm", "the speed in rpm is read as rad/s", "first flapwise by tens of percent",
-             asked(lambda run: (run[0] * 30 / np.pi, *run[1:]))),
+             altered_question(lambda run: (run[0] * 30 / np.pi, *run[1:]))),
     _adapter("hub radius dropped", "the blade of the code begins on the rotor axis", "first modes −3 %",
-             given(lambda b: replace(b, hub_radius=0.0))),
+             altered_blade(lambda b: replace(b, hub_radius=0.0))),
     _adapter("tip mass dropped", "the blade of the code has no tip mass", "first modes by tens of percent",
-             given(lambda b: replace(b, tip_mass=np.zeros((6, 6)))), TIP),
+             altered_blade(lambda b: replace(b, tip_mass=np.zeros((6, 6)))), TIP),
     _adapter("twist in degrees", "degrees are read as radians, in the opposite sense", "second modes by several percent",
-             given(lambda b: replace(b, twist=np.degrees(b.twist))), TWISTED),
+             altered_blade(lambda b: replace(b, twist=np.degrees(b.twist))), TWISTED),
     _adapter("twist reversed in the adapter", "the twist of the code has the opposite sense", "no frequency; no partner",
-             given(lambda b: replace(b, twist=-b.twist)), TWISTED),
+             altered_blade(lambda b: replace(b, twist=-b.twist)), TWISTED),
     _adapter("precone dropped", "the blade of the code has no precone", "first flapwise by several percent",
-             given(lambda b: replace(b, precone=0.0)), CONED),
+             altered_blade(lambda b: replace(b, precone=0.0)), CONED),
     _adapter("pitch dropped", "the blade of the code has no pitch", "lowest modes by several percent",
-             given(lambda b: replace(b, pitch=0.0)), PITCHED),
+             altered_blade(lambda b: replace(b, pitch=0.0)), PITCHED),
     _adapter("taper dropped", "every element has the root's section", "first modes by tens of percent",
-             given(lambda b: replace(b, stiffness=b.stiffness[[0] * len(b.stations)], mass=b.mass[[0] * len(b.stations)])),
-             TAPERED),
+             altered_blade(lambda b: replace(b, stiffness=b.stiffness[[0] * len(b.stations)],
+                                             mass=b.mass[[0] * len(b.stations)])), TAPERED),
     _adapter("density", "mass half a percent too large", "all modes at rest −0.25 %",
-             given(lambda b: replace(b, mass=1.005 * b.mass)), REST),
+             altered_blade(lambda b: replace(b, mass=1.005 * b.mass)), REST),
     _adapter("modulus", "stiffness too small by a factor of 1000: kN for N", "all modes −97 % at rest",
-             given(lambda b: replace(b, stiffness=b.stiffness / 1000)), REST),
+             altered_blade(lambda b: replace(b, stiffness=b.stiffness / 1000)), REST),
     _adapter("zero frequency", "the lowest frequency is 0", "first −100 %", answered(_zero)),
     _adapter("wide bracket", "wrong by 60 %, with a stated uncertainty of 90 %", "+60 %", answered(_wide)),
     _adapter("crash", "the code's process dies", "no answer", _crashes),

@@ -16,27 +16,27 @@ from ..solve import core_solver
 Balance = Callable[..., Steady]
 
 
-def with_effects(**lacks: bool) -> Callable[[Balance], Balance]:
+def with_effects(**omitted: bool) -> Callable[[Balance], Balance]:
     """Core omits effects without declaring it."""
 
-    def make(right: Balance) -> Balance:
-        def wrong(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
-            return right(body, omega, gravity, replace(effects, **lacks), guess)
+    def make(original: Balance) -> Balance:
+        def faulty(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
+            return original(body, omega, gravity, replace(effects, **omitted), guess)
 
-        return wrong
+        return faulty
 
     return make
 
 
-def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
-    """Spin softening is multiplied by ``factor``; effects in ``lacks`` are also omitted."""
+def softening(factor: float, **omitted: bool) -> Callable[[Balance], Balance]:
+    """Spin softening is multiplied by ``factor``; effects in ``omitted`` are also omitted."""
 
-    def make(right: Balance) -> Balance:
-        def wrong(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
-            state = right(body, omega, gravity, replace(effects, **lacks), guess)
+    def make(original: Balance) -> Balance:
+        def faulty(body: Mesh, omega: float, gravity: Any, effects: Effects, guess: Any = None) -> Steady:
+            state = original(body, omega, gravity, replace(effects, **omitted), guess)
             return replace(state, pencil=scaled_terms.softened(body, state, omega, factor))
 
-        return wrong
+        return faulty
 
     return make
 
@@ -44,12 +44,12 @@ def softening(factor: float, **lacks: bool) -> Callable[[Balance], Balance]:
 def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
     """The linearised matrices are altered."""
 
-    def make(right: Balance) -> Balance:
-        def wrong(*args: Any, **kwargs: Any) -> Steady:
-            state = right(*args, **kwargs)
+    def make(original: Balance) -> Balance:
+        def faulty(*args: Any, **kwargs: Any) -> Steady:
+            state = original(*args, **kwargs)
             return replace(state, pencil=alter(state.pencil))
 
-        return wrong
+        return faulty
 
     return make
 
@@ -57,11 +57,11 @@ def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
 def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
     """The chain is altered after discretisation."""
 
-    def make(right: Any) -> Any:
-        def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Mesh:
-            return alter(right(blade, *args, **kwargs), blade)
+    def make(original: Any) -> Any:
+        def faulty(blade: Blade, *args: Any, **kwargs: Any) -> Mesh:
+            return alter(original(blade, *args, **kwargs), blade)
 
-        return wrong
+        return faulty
 
     return make
 
@@ -69,11 +69,11 @@ def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
 def alter_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     """A function receives a different blade."""
 
-    def make(right: Any) -> Any:
-        def wrong(blade: Blade, *args: Any, **kwargs: Any) -> Any:
-            return right(alter(blade), *args, **kwargs)
+    def make(original: Any) -> Any:
+        def faulty(blade: Blade, *args: Any, **kwargs: Any) -> Any:
+            return original(alter(blade), *args, **kwargs)
 
-        return wrong
+        return faulty
 
     return make
 
@@ -81,11 +81,11 @@ def alter_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
 def alter_property(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
     """A property along the blade is altered: ``alter(values, blade, s)``."""
 
-    def make(right: Any) -> Any:
-        def wrong(blade: Blade, s: Any) -> Any:
-            return alter(right(blade, s), blade, s)
+    def make(original: Any) -> Any:
+        def faulty(blade: Blade, s: Any) -> Any:
+            return alter(original(blade, s), blade, s)
 
-        return wrong
+        return faulty
 
     return make
 
@@ -93,11 +93,11 @@ def alter_property(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], A
 def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
     """Core uses different rotor speeds."""
 
-    def make(right: Any) -> Any:
-        def wrong(blade: Blade, omegas: Sequence[float], *args: Any, **kwargs: Any) -> Any:
-            return right(blade, list(map(alter, omegas)), *args, **kwargs)
+    def make(original: Any) -> Any:
+        def faulty(blade: Blade, omegas: Sequence[float], *args: Any, **kwargs: Any) -> Any:
+            return original(blade, list(map(alter, omegas)), *args, **kwargs)
 
-        return wrong
+        return faulty
 
     return make
 
@@ -127,9 +127,9 @@ def mirrored_tip(chain: Mesh, blade: Blade) -> Mesh:
     return replace(chain, lumps=lumps)
 
 
-def scaled_beyond(mass: Any, blade: Blade, s: Any, factor: float, beyond: float) -> Any:
-    """Mass per length (k, 6, 6) times ``factor`` where ``s`` exceeds the fraction ``beyond`` of the length."""
-    return mass * np.where(np.asarray(s) > beyond * blade.length, factor, 1.0)[:, None, None]
+def scaled_beyond(mass: Any, blade: Blade, s: Any, factor: float, fraction: float) -> Any:
+    """Mass per length (k, 6, 6) times ``factor`` where ``s`` exceeds the ``fraction`` of the length."""
+    return mass * np.where(np.asarray(s) > fraction * blade.length, factor, 1.0)[:, None, None]
 
 
 def swapped_axes(stiffness: Any, *_: Any) -> Any:

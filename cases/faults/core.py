@@ -33,8 +33,8 @@ from .seeding import Fault, Trial
 from .trials import AXIAL, CONED, COUPLED, CROSSED, FAST, HINGED, PARK, PITCHED, TAPERED, THICK, TIP, TORSIONAL, TWISTED
 
 
-def _core(name: str, what: str, size: str, seam: Any, trial: Trial, fast: bool = False) -> Fault:
-    return Fault(name, "solver", what, size, (seam,), trial, fast=fast)
+def _core(name: str, description: str, size: str, seam: Any, trial: Trial, fast: bool = False) -> Fault:
+    return Fault(name, "solver", description, size, (seam,), trial, fast=fast)
 
 
 BALANCE = "balance"
@@ -139,21 +139,21 @@ FAULTS = (
         "twist's sense",
         "twist rotates the sections in the opposite sense",
         "shapes mirrored; MAC below 0.8",
-        (sections, "twist_at", lambda right: lambda blade, s: -right(blade, s)),
+        (sections, "twist_at", lambda original: lambda blade, s: -original(blade, s)),
         TWISTED,
     ),
     _core(
         "twist across ±180°",
         "the twist jumps by a turn between two stations if its sign changes there",
         "shapes and frequencies by tens of percent",
-        (sections, "twist_at", lambda right: lambda blade, s: right(replace(blade, twist=blade.twist % (2 * np.pi)), s)),
+        (sections, "twist_at", lambda original: lambda blade, s: original(replace(blade, twist=blade.twist % (2 * np.pi)), s)),
         CROSSED,
     ),
     _core(
         "no twist",
         "twist is dropped",
         "second mode by several percent",
-        (sections, "twist_at", lambda right: lambda blade, s: 0.0 * right(blade, s)),
+        (sections, "twist_at", lambda original: lambda blade, s: 0.0 * original(blade, s)),
         TWISTED,
     ),
     _core(
@@ -202,7 +202,7 @@ FAULTS = (
         "no taper",
         "the stiffness of the root along the whole blade",
         "first modes +10 %",
-        (sections, "stiffness_at", lambda right: lambda blade, s: right(blade, 0.0 * np.asarray(s))),
+        (sections, "stiffness_at", lambda original: lambda blade, s: original(blade, 0.0 * np.asarray(s))),
         TAPERED,
     ),
     _core("tip mass in grams", "a unit error: a thousand times the tip mass", "first modes by −80 %",

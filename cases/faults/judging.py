@@ -18,113 +18,113 @@ OPENFAST = Trial("nrel-5mw", (0.0,), ())
 BMODES = Trial("windpact-1.5/bmodes", (6.283185307179586,), ())
 
 
-def by_number(right: Any) -> Any:
+def by_number(original: Any) -> Any:
     """Modes are paired by their number."""
 
-    def wrong(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
-        return [Pair(i if i < len(other.values) else None, 1.0) for i, _ in enumerate(indices)]
+    def faulty(reference: Spectrum, answer: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
+        return [Pair(i if i < len(answer.values) else None, 1.0) for i, _ in enumerate(indices)]
 
-    return wrong
+    return faulty
 
 
-def next_one(right: Any) -> Any:
+def next_one(original: Any) -> Any:
     """The partner of a mode is the one after it, in the answers of codes only: core would be wrong in the same way."""
 
-    def wrong(answers: Sequence[Spectrum], compared: Compared, *args: Any) -> list[RefinedMode]:
+    def faulty(answers: Sequence[Spectrum], compared: Compared, *args: Any) -> list[RefinedMode]:
         last = len(compared.spectrum.values) - 1
-        return right(answers, replace(compared, indices=tuple(min(i + 1, last) for i in compared.indices)), *args)
+        return original(answers, replace(compared, indices=tuple(min(i + 1, last) for i in compared.indices)), *args)
 
-    return wrong
+    return faulty
 
 
-def anything_goes(right: Any) -> Any:
+def anything_goes(original: Any) -> Any:
     """Any MAC is accepted."""
 
-    def wrong(ours: Spectrum, other: Spectrum, indices: Sequence[int], least: float = 0.0) -> list[Pair]:
-        return right(ours, other, indices, 0.0)
+    def faulty(core: Spectrum, answer: Spectrum, indices: Sequence[int], least: float = 0.0) -> list[Pair]:
+        return original(core, answer, indices, 0.0)
 
-    return wrong
+    return faulty
 
 
-def inferred(right: Any) -> Any:
+def inferred(original: Any) -> Any:
     """Unsupported motions of a code are inferred from its answer."""
     return lambda reference, i, motions: "no mode of this code moves so"
 
 
 def _sure(uncertainty: float | None) -> Any:
-    def make(right: Any) -> Any:
-        def wrong(*args: Any) -> Estimate:
-            return replace(right(*args), uncertainty=uncertainty)
+    def make(original: Any) -> Any:
+        def faulty(*args: Any) -> Estimate:
+            return replace(original(*args), uncertainty=uncertainty)
 
-        return wrong
+        return faulty
 
     return make
 
 
-def _extrapolated(right: Any) -> Any:
-    def wrong(estimate: Estimate, more: float) -> Estimate:
-        return right(replace(estimate, value=estimate.value * (1.002 if estimate.order else 1.0)), more)
+def _extrapolated(original: Any) -> Any:
+    def faulty(estimate: Estimate, widening: float) -> Estimate:
+        return original(replace(estimate, value=estimate.value * (1.002 if estimate.order else 1.0)), widening)
 
-    return wrong
+    return faulty
 
 
-def _passes(right: Any) -> Any:
+def _passes(original: Any) -> Any:
     return lambda difference, uncertainty, target: ("pass", "")
 
 
-def _signed(right: Any) -> Any:
-    return lambda difference, uncertainty, target: right(max(difference, 0.0), uncertainty, target)
+def _signed(original: Any) -> Any:
+    return lambda difference, uncertainty, target: original(max(difference, 0.0), uncertainty, target)
 
 
-def _loose(right: Any) -> Any:
-    return lambda difference, uncertainty, target: right(difference, uncertainty, 100.0 * target)
+def _loose(original: Any) -> Any:
+    return lambda difference, uncertainty, target: original(difference, uncertainty, 100.0 * target)
 
 
-def _half(right: Any) -> Any:
-    return lambda difference, uncertainty, target: right(difference - 0.002, uncertainty, target)
+def _half(original: Any) -> Any:
+    return lambda difference, uncertainty, target: original(difference - 0.002, uncertainty, target)
 
 
-def _excuses(right: Any) -> Any:
-    def wrong(difference: float, uncertainty: float | None, target: float) -> Any:
-        verdict, reason = right(difference, uncertainty, target)
+def _excuses(original: Any) -> Any:
+    def faulty(difference: float, uncertainty: float | None, target: float) -> Any:
+        verdict, reason = original(difference, uncertainty, target)
         return ("known difference", "discretisation") if verdict == "fail" else (verdict, reason)
 
-    return wrong
+    return faulty
 
 
 def _column(name: str, factor: float) -> Any:
-    def make(right: Any) -> Any:
-        def wrong(*args: Any) -> Any:
-            columns = right(*args)
+    def make(original: Any) -> Any:
+        def faulty(*args: Any) -> Any:
+            columns = original(*args)
             return {**columns, name: factor * columns[name]}
 
-        return wrong
+        return faulty
 
     return make
 
 
-def _exchanged(right: Any) -> Any:
-    def wrong(*args: Any) -> Any:
-        columns = right(*args)
+def _exchanged(original: Any) -> Any:
+    def faulty(*args: Any) -> Any:
+        columns = original(*args)
         return {**columns, "EI_flap [N m^2]": columns["EI_edge [N m^2]"], "EI_edge [N m^2]": columns["EI_flap [N m^2]"]}
 
-    return wrong
+    return faulty
 
 
-def _backwards(right: Any) -> Any:
-    def wrong(*args: Any) -> Any:
-        columns = right(*args)
+def _backwards(original: Any) -> Any:
+    def faulty(*args: Any) -> Any:
+        columns = original(*args)
         return {name: column if name == "fraction [-]" else column[::-1] for name, column in columns.items()}
 
-    return wrong
+    return faulty
 
 
-def _digits(right: Any) -> Any:
-    return lambda text, unit=1.0: right(text[:-1] + ("0" if text[-1] != "0" else "9"), unit)
+def _digits(original: Any) -> Any:
+    return lambda text, unit=1.0: original(text[:-1] + ("0" if text[-1] != "0" else "9"), unit)
 
 
-def _numbers(right: Any) -> Any:
-    return lambda text, unit=1.0: right(text, unit * 1.05)
+def _numbers(original: Any) -> Any:
+    return lambda text, unit=1.0: original(text, unit * 1.05)
 
 
 def judge(make: Any) -> tuple[Seam, ...]:
@@ -132,8 +132,8 @@ def judge(make: Any) -> tuple[Seam, ...]:
     return (refined, "judge", make), (same, "judge", make), (verdict, "judge", make)
 
 
-def _judging(name: str, area: Any, what: str, size: str, seams: tuple[Seam, ...], blinds: str) -> Fault:
-    return Fault(name, area, what, size, seams, blinds=blinds)
+def _judging(name: str, area: Any, description: str, size: str, seams: tuple[Seam, ...], blinds: str) -> Fault:
+    return Fault(name, area, description, size, seams, blinds=blinds)
 
 
 FAULTS = (
@@ -142,7 +142,7 @@ FAULTS = (
     Fault("paired with the next", "pairing", "an index one too high", "next mode's frequency",
           ((refined, "follow", next_one),), PARK),
     Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
-          ((pairing, "_norm", lambda right: lambda a, momenta: 4.0 * right(a, momenta)),), PARK),
+          ((pairing, "_norm", lambda original: lambda a, momenta: 4.0 * original(a, momenta)),), PARK),
     _judging("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",
              ((convergence, "pair", anything_goes), (refined, "pair", anything_goes)), "twist reversed in the adapter"),
     _judging("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",
@@ -163,7 +163,7 @@ FAULTS = (
              judge(_excuses), "no Coriolis"),
     Fault("judged with a bias", "verdict", "differences are 0.2 % too small", "−0.2 %", judge(_half), PARK),
     Fault("model ignored", "verdict", "a code without effects is compared with all of them", "Coriolis at γ = 10",
-          ((reference, "relevant_effects", lambda right: lambda *_: reference.ALL_EFFECTS),),
+          ((reference, "relevant_effects", lambda original: lambda *_: reference.ALL_EFFECTS),),
           replace(FAST, codes=("assumed-modes",))),
     Fault("printed digit", "reader", "the last digit of a printed number is misread", "0.1 to 0.5 %",
           ((published_tables, "from_print", _digits),), Trial("park-cantilever", (10.0,), ())),

@@ -45,8 +45,8 @@ DAMPED = Trial("hinged-blade", (30.0,), ("pinocchio-loops",))
 def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
     """Core's linearised equations of motion are altered at every azimuth."""
 
-    def make(right: Any) -> Any:
-        return lambda *args, **kwargs: alter(right(*args, **kwargs))
+    def make(original: Any) -> Any:
+        return lambda *args, **kwargs: alter(original(*args, **kwargs))
 
     return (modal, "about", make), (periodic, "about", make)
 
@@ -54,11 +54,11 @@ def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
 def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:
     """The answer of a code is altered."""
 
-    def make(right: Any) -> Any:
-        def wrong(*args: Any) -> list[Answer]:
-            return [answer if isinstance(answer, Failure) else alter(answer) for answer in right(*args)]
+    def make(original: Any) -> Any:
+        def faulty(*args: Any) -> list[Answer]:
+            return [answer if isinstance(answer, Failure) else alter(answer) for answer in original(*args)]
 
-        return wrong
+        return faulty
 
     return make
 
@@ -66,20 +66,20 @@ def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[An
 def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
     """The code solves a different mechanism."""
 
-    def make(right: Any) -> Any:
-        def wrong(name: str, some: Sequence[Mechanism], guess: Mapping[str, float], *how: Any) -> list[Answer]:
-            return right(name, [alter(m) for m in some], guess, *how)
+    def make(original: Any) -> Any:
+        def faulty(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], *how: Any) -> list[Answer]:
+            return original(name, [alter(m) for m in mechanisms], guess, *how)
 
-        return wrong
+        return faulty
 
     return make
 
 
-def _by_number(right: Any) -> Any:
-    def wrong(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
-        return [Pair(k if k < len(other.values) else None, 1.0) for k in indices]
+def _by_number(original: Any) -> Any:
+    def faulty(reference: Spectrum, spectrum: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
+        return [Pair(k if k < len(spectrum.values) else None, 1.0) for k in indices]
 
-    return wrong
+    return faulty
 
 
 def _open(mechanism: Mechanism) -> Mechanism:
@@ -94,21 +94,21 @@ def _backwards(mechanism: Mechanism) -> Mechanism:
     return replace(mechanism, equal_blades=tuple(group[::-1] for group in mechanism.equal_blades))
 
 
-def _not_gyroscopic(right: Any) -> Any:
+def _not_gyroscopic(original: Any) -> Any:
     """Multi-blade coordinates without the term 2 Ω M R."""
 
-    def wrong(M: Any, C: Any, K: Any, psi: Any, omega: float, blades: Any) -> Any:
-        mass, damping, stiffness = right(M, C, K, psi, omega, blades)
+    def faulty(M: Any, C: Any, K: Any, psi: Any, omega: float, blades: Any) -> Any:
+        mass, damping, stiffness = original(M, C, K, psi, omega, blades)
         return mass, damping - 2.0 * omega * mass @ blades.rate(), stiffness
 
-    return wrong
+    return faulty
 
 
-def _frozen(right: Any) -> Any:
+def _frozen(original: Any) -> Any:
     return lambda mechanism: None
 
 
-def _unchecked(right: Any) -> Any:
+def _unchecked(original: Any) -> Any:
     return lambda linear: None
 
 

@@ -68,13 +68,13 @@ def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Descripti
 
     A column that is no code, as that of a program which reads the deck itself, would not see a fault of a blade.
     """
-    asked = {code.name: code.asked for code in codes if not code.failure}
+    identifiers = {code.name: code.asked for code in codes if not code.failure}
     fastest = max(subject.points)
-    passing: dict[str, bool] = {}
+    has_passed: dict[str, bool] = {}
     for cell in cells:
         if cell.case == subject.name and cell.omega == fastest and cell.role == "code" and cell.shares == "nothing":
-            passing[cell.code] = passing.get(cell.code, True) and cell.verdict == "pass" and bool(cell.version)
-    return tuple(asked[code] for code, passes in passing.items() if passes and code in asked)[:WITNESSES]
+            has_passed[cell.code] = has_passed.get(cell.code, True) and cell.verdict == "pass" and bool(cell.version)
+    return tuple(identifiers[code] for code, passes in has_passed.items() if passes and code in identifiers)[:WITNESSES]
 
 
 def chosen(names: Iterable[str]) -> tuple[str, ...]:
@@ -86,8 +86,8 @@ def chosen(names: Iterable[str]) -> tuple[str, ...]:
 def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse: bool = False) -> list[Control]:
     """Run faults on a blade at its highest speed, against some codes; a task for any process."""
     variant = replace(subject.variant, speeds=np.array([max(subject.points)]))
-    described = describe(codes, [variant.blade])
-    right: dict[bool, tuple[Cell, ...]] = {}
+    descriptions = describe(codes, [variant.blade])
+    correct_cells: dict[bool, tuple[Cell, ...]] = {}
     out = []
     for fault in (BY_NAME[name] for name in names):
         paper = fault.name in OF_THE_PAPER
@@ -97,31 +97,33 @@ def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse
             continue
 
         def solve(of: BladeSubject = fastest) -> tuple[Cell, ...]:
-            return matrix.run([of], described, Serial(), reuse=reuse, parts=False).cells
+            return matrix.run([of], descriptions, Serial(), reuse=reuse, parts=False).cells
 
-        if paper not in right:
-            right[paper] = solve()
+        if paper not in correct_cells:
+            correct_cells[paper] = solve()
         with seeded(fault.seams):
-            wrong = solve()
-        out.append(judged(_control(fault, fastest), right[paper], wrong))
+            faulty_cells = solve()
+        out.append(judged(_control(fault, fastest), correct_cells[paper], faulty_cells))
     return out
 
 
-def judged(control: Control, right: Sequence[Cell], wrong: Sequence[Cell]) -> Control:
+def judged(control: Control, correct_cells: Sequence[Cell], faulty_cells: Sequence[Cell]) -> Control:
     """The result of a fault from the cells of independent codes without and with it."""
-    before = {_key(cell): cell for cell in right}
-    bad = [c for c in wrong if c.verdict == "fail" and getattr(before.get(_key(c)), "verdict", "") != "fail"]
-    if bad:
-        changes = [c.difference for c in bad if c.difference is not None]
-        detections = tuple(f"{c.case}, {c.code}, {c.name or 'no answer'}, {c.omega:g} rad/s: fail" for c in bad)
+    by_key = {_key(cell): cell for cell in correct_cells}
+    failures = [
+        c for c in faulty_cells if c.verdict == "fail" and getattr(by_key.get(_key(c)), "verdict", "") != "fail"
+    ]
+    if failures:
+        changes = [c.difference for c in failures if c.difference is not None]
+        detections = tuple(f"{c.case}, {c.code}, {c.name or 'no answer'}, {c.omega:g} rad/s: fail" for c in failures)
         return replace(control, detected_by=detections, change=max(changes, key=abs, default=None))
-    pairs = [(before[_key(c)], c) for c in wrong if _key(c) in before]
-    both = [both for a, b in pairs for both in ((a.reference, b.reference), (a.value, b.value))]
-    moved = [abs(y / x - 1.0) for x, y in both if x and y]
-    lost = any(a.value is not None and b.value is None for a, b in pairs)
-    target = min((c.target for c in wrong), default=0.0)
-    if moved and not lost and max(moved) <= target:
-        size = f" by more than {unsigned(max(moved))}" if max(moved) else ""
+    pairs = [(by_key[_key(c)], c) for c in faulty_cells if _key(c) in by_key]
+    compared = [pair for a, b in pairs for pair in ((a.reference, b.reference), (a.value, b.value))]
+    relative_changes = [abs(y / x - 1.0) for x, y in compared if x and y]
+    has_lost = any(a.value is not None and b.value is None for a, b in pairs)
+    target = min((c.target for c in faulty_cells), default=0.0)
+    if relative_changes and not has_lost and max(relative_changes) <= target:
+        size = f" by more than {unsigned(max(relative_changes))}" if max(relative_changes) else ""
         return replace(control, without_effect=f"changes no compared frequency{size}")
     return control
 

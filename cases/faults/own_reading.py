@@ -40,8 +40,8 @@ def _root_mass(blade: Blade) -> Blade:
 
 def _shifted(blade: Blade) -> Blade:
     """Sections about an axis that lies a hundredth of the length behind theirs."""
-    place = pose(np.eye(3), np.array([0.0, 0.01 * blade.length, 0.0]))
-    return replace(blade, mass=transformed(blade.mass, np.broadcast_to(place, (len(blade.mass), 4, 4))))
+    shift = pose(np.eye(3), np.array([0.0, 0.01 * blade.length, 0.0]))
+    return replace(blade, mass=transformed(blade.mass, np.broadcast_to(shift, (len(blade.mass), 4, 4))))
 
 
 def _shear_and_torsion(blade: Blade) -> Blade:
@@ -79,26 +79,26 @@ def run(subject: BladeSubject) -> list[Control]:
 
 def of_file(case: str, omega: float, file: BladeFile) -> list[Control]:
     """Run the mistakes of readers on a blade's file: the second reading must differ."""
-    right, _ = properties.of_reading(case, file, file.blade)
+    correct_rows, _ = properties.of_reading(case, file, file.blade)
     out = []
     for fault in READER:
         control = Control(fault.name, "reader", fault.what, "", case, omega, ())
-        if absent := [row.reason for row in right if row.verdict == "not run"]:
-            out.append(replace(control, needs=absent[0]))
+        if reasons := [row.reason for row in correct_rows if row.verdict == "not run"]:
+            out.append(replace(control, needs=reasons[0]))
             continue
         try:
-            wrong = fault.alter(file.blade)
+            faulty_blade = fault.alter(file.blade)
         except ValueError as error:
             out.append(replace(control, detected_by=(f"{case}, refused: {error}",)))
             continue
-        if _equal(wrong, file.blade):
+        if _equal(faulty_blade, file.blade):
             out.append(replace(control, without_effect="changes no property of this blade"))
             continue
-        if fault.part and fault.part not in {row.part for row in right}:
+        if fault.part and fault.part not in {row.part for row in correct_rows}:
             out.append(replace(control, needs=f"a file that states the {fault.part}"))
             continue
-        rows, _ = properties.of_reading(case, replace(file, blade=wrong), wrong)
-        failing = {row.part for row in right if row.verdict == "fail"}
+        rows, _ = properties.of_reading(case, replace(file, blade=faulty_blade), faulty_blade)
+        failing = {row.part for row in correct_rows if row.verdict == "fail"}
         detections = [row for row in rows if row.verdict == "fail" and row.part not in failing]
         out.append(
             replace(control, detected_by=tuple(f"{case}, second reading, {row.part}: fail" for row in detections))

@@ -53,15 +53,15 @@ def chosen(names: Sequence[str]) -> tuple[str, ...]:
 def run(subject: TurbineSubject, codes: Sequence[str], names: Sequence[str], reuse: bool = False) -> list[Control]:
     """Run faults on a turbine at its highest speed, against the first of ``codes``; a task for any process."""
     fastest = _Witnessed(**{**vars(subject), "points": (max(subject.points),)})
-    described = describe(codes[:1], [])
+    descriptions = describe(codes[:1], [])
 
     def solve() -> tuple[Cell, ...]:
-        return matrix.run([fastest], described, Serial(), reuse=reuse, parts=False).cells
+        return matrix.run([fastest], descriptions, Serial(), reuse=reuse, parts=False).cells
 
     weigh = _weighing(subject) if codes else list
     out = []
     with seeded((_remembered(),)):
-        right = solve() if codes else ()
+        correct_cells = solve() if codes else ()
         for fault in (BY_NAME[name] for name in names):
             control = Control(
                 fault.name, fault.area, fault.what, fault.size, subject.name, max(subject.points), detected_by=()
@@ -70,8 +70,12 @@ def run(subject: TurbineSubject, codes: Sequence[str], names: Sequence[str], reu
                 out.append(replace(control, needs=NO_WITNESS))
                 continue
             with seeded(fault.seams):
-                judged, heavy = own.judged(control, right, solve()), tuple(weigh())
-            out.append(judged if judged.detected_by or not heavy else replace(control, detected_by=heavy))
+                control_result, weight_failures = own.judged(control, correct_cells, solve()), tuple(weigh())
+            out.append(
+                control_result
+                if control_result.detected_by or not weight_failures
+                else replace(control, detected_by=weight_failures)
+            )
     return out
 
 
@@ -85,19 +89,21 @@ def _weighing(subject: TurbineSubject) -> Callable[[], list[str]]:
         rows = turbine_weights.of_solver(subject.name, subject.turbine, weighed)
         return [f"{subject.name}, Southwell's own model, {row.part}: fail" for row in rows if row.verdict == "fail"]
 
-    before = failing()
-    return lambda: [line for line in failing() if line not in before]
+    failing_before_fault = failing()
+    return lambda: [line for line in failing() if line not in failing_before_fault]
 
 
 def _remembered() -> Seam:
     """Each question is put to a code once: what core assembles does not change its answer."""
     answers: dict[tuple[Any, ...], Any] = {}
 
-    def make(right: Callable[..., Any]) -> Callable[..., Any]:
+    def make(original: Callable[..., Any]) -> Callable[..., Any]:
         def ask(name: str, turbine: Turbine, runs: Sequence[Any], *how: Any) -> list[Any]:
-            new = [asked for asked in runs if (name, *asked) not in answers]
-            answers.update(zip([(name, *asked) for asked in new], right(name, turbine, new, *how), strict=True))
-            return [answers[name, *asked] for asked in runs]
+            new = [question for question in runs if (name, *question) not in answers]
+            answers.update(
+                zip([(name, *question) for question in new], original(name, turbine, new, *how), strict=True)
+            )
+            return [answers[name, *question] for question in runs]
 
         return ask
 
@@ -113,8 +119,8 @@ def _other_side(turbine: Turbine) -> Turbine:
 def _exchanged(turbine: Turbine) -> Turbine:
     """Fore-aft and side-to-side stiffness of the tower exchanged."""
     stiffness = turbine.tower.stiffness.copy()
-    pair, other = [BEND_Y, BEND_Z], [BEND_Z, BEND_Y]
-    stiffness[:, pair, pair] = stiffness[:, other, other]
+    pair, exchange = [BEND_Y, BEND_Z], [BEND_Z, BEND_Y]
+    stiffness[:, pair, pair] = stiffness[:, exchange, exchange]
     return replace(turbine, tower=replace(turbine.tower, stiffness=stiffness))
 
 
@@ -142,18 +148,18 @@ def reading(subject: TurbineSubject) -> list[Control]:
     file = readers.BladeFile(path, blade.blade, blade.source, subject.mount)
     fastest = max(subject.points)
     out = own_reading.of_file(subject.name, fastest, file)
-    right = read_again(subject.name, subject.turbine, path, subject.mount)
-    failing_before = {row.part for row in right if row.verdict != "pass"}
-    for name, what, alter in READER:
-        control = Control(name, "reader", what, "", subject.name, fastest, ())
-        if absent := [row.reason for row in right if row.verdict == "not run"]:
-            out.append(replace(control, needs=absent[0]))
+    correct_rows = read_again(subject.name, subject.turbine, path, subject.mount)
+    failing_before = {row.part for row in correct_rows if row.verdict != "pass"}
+    for name, description, alter in READER:
+        control = Control(name, "reader", description, "", subject.name, fastest, ())
+        if reasons := [row.reason for row in correct_rows if row.verdict == "not run"]:
+            out.append(replace(control, needs=reasons[0]))
             continue
         rows = read_again(subject.name, alter(subject.turbine), path, subject.mount)
         parts = [row.part for row in rows if row.verdict == "fail" and row.part not in failing_before]
         detected = tuple(f"{subject.name}, second reading, {part}: fail" for part in parts)
-        same = not detected and _alike(subject.turbine, alter(subject.turbine))
-        effect = "changes no property of this turbine" if same else ""
+        unchanged = not detected and _alike(subject.turbine, alter(subject.turbine))
+        effect = "changes no property of this turbine" if unchanged else ""
         out.append(replace(control, detected_by=detected, without_effect=effect))
     return out
 

@@ -73,8 +73,8 @@ class _Known:
 
 
 def _altered(alter: Callable[[Estimate, Sequence[int], Sequence[float]], Estimate]) -> Callable[[Refine], Refine]:
-    def make(right: Refine) -> Refine:
-        return lambda elements, values, order: alter(right(elements, values, order), elements, values)
+    def make(original: Refine) -> Refine:
+        return lambda elements, values, order: alter(original(elements, values, order), elements, values)
 
     return make
 
@@ -97,8 +97,8 @@ def _off(estimate: Estimate, *_: Any) -> Estimate:
     return replace(estimate, value=1.002 * estimate.value)
 
 
-def _fault(name: str, what: str, size: str, alter: Callable[..., Estimate]) -> _Fault:
-    return _Fault(name, what, size, (convergence, "from_refinement", _altered(alter)))
+def _fault(name: str, description: str, size: str, alter: Callable[..., Estimate]) -> _Fault:
+    return _Fault(name, description, size, (convergence, "from_refinement", _altered(alter)))
 
 
 FAULTS = (
@@ -122,17 +122,19 @@ def run(subject: BladeSubject) -> list[Control]:
     except (*NO_STATE, ArithmeticError):
         return [replace(control, needs=NO_MESH) for control in controls]
     values = _estimates(solutions)
-    right = _outside(subject, solutions, values)
+    uncovered = _outside(subject, solutions, values)
     out = []
     for fault, control in zip(FAULTS, controls, strict=True):
         with seeded([fault.seam]):
-            altered = _estimates(solutions)
-        wrong = _outside(subject, solutions, altered)
-        failing = {mode: change for mode, change in wrong.items() if mode not in right}
+            faulty_values = _estimates(solutions)
+        uncovered_by_fault = _outside(subject, solutions, faulty_values)
+        failing = {mode: change for mode, change in uncovered_by_fault.items() if mode not in uncovered}
         largest = max(failing.values(), key=abs, default=None)
         result = replace(control, detected_by=tuple(f"{mode}: fail" for mode in failing), change=largest)
         out.append(
-            replace(result, without_effect="" if failing else _exact(solutions) or _covered(subject, values, altered))
+            replace(
+                result, without_effect="" if failing else _exact(solutions) or _covered(subject, values, faulty_values)
+            )
         )
     return out
 
@@ -164,8 +166,8 @@ def _outside(
             if estimate is None or estimate.uncertainty is None:
                 continue
             difference = float(estimate.value * of.factor[k] / of.refined.frequencies[k] - 1.0)
-            rest = float(of.refined.uncertainty[k] + of.unsure[k])
-            if judge(difference, rest, estimate.uncertainty)[0] == "fail":
+            uncertainty = float(of.refined.uncertainty[k] + of.unsure[k])
+            if judge(difference, uncertainty, estimate.uncertainty)[0] == "fail":
                 meshes = " and ".join([", ".join(map(str, of.elements[:-1])), str(of.elements[-1])])
                 out[f"{subject.name}, mode {k + 1} from {meshes} elements, {of.refined.omega:g} rad/s"] = difference
     return out
@@ -183,11 +185,11 @@ def _exact(solutions: Sequence[_Known]) -> str:
 
 
 def _covered(
-    subject: BladeSubject, right: Sequence[Sequence[Estimate | None]], wrong: Sequence[Sequence[Estimate | None]]
+    subject: BladeSubject, correct: Sequence[Sequence[Estimate | None]], faulty: Sequence[Sequence[Estimate | None]]
 ) -> str:
     """By how much a fault of the limit moves the frequencies, if that is within the target; else empty."""
-    pairs = [(a, b) for of in zip(right, wrong, strict=True) for a, b in zip(*of, strict=True) if a and b]
-    moved = max((abs(b.value / a.value - 1.0) for a, b in pairs), default=0.0)
-    if 0.0 < moved <= subject.case.text.compare.target:
-        return f"moves frequencies by at most {unsigned(moved)}, within their uncertainty"
+    pairs = [(a, b) for of in zip(correct, faulty, strict=True) for a, b in zip(*of, strict=True) if a and b]
+    change = max((abs(b.value / a.value - 1.0) for a, b in pairs), default=0.0)
+    if 0.0 < change <= subject.case.text.compare.target:
+        return f"moves frequencies by at most {unsigned(change)}, within their uncertainty"
     return ""

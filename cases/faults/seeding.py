@@ -103,25 +103,25 @@ def seeded(seams: Sequence[Seam]) -> Iterator[None]:
     Raises:
         AttributeError: if a seam no longer exists.
     """
-    here = get_ident()
+    thread = get_ident()
     with _LOCK:
-        right = [(owner, name, getattr(owner, name)) for owner, name, _ in seams]
+        originals = [(owner, name, getattr(owner, name)) for owner, name, _ in seams]
         try:
-            for (owner, name, make), (_, _, old) in zip(seams, right, strict=True):
+            for (owner, name, make), (_, _, old) in zip(seams, originals, strict=True):
                 new = make(old)
-                setattr(owner, name, _only(here, old, new) if callable(old) else new)
+                setattr(owner, name, _only(thread, old, new) if callable(old) else new)
             yield
         finally:
-            for owner, name, old in reversed(right):
+            for owner, name, old in reversed(originals):
                 setattr(owner, name, old)
 
 
-def _only(thread: int, right: Callable[..., Any], wrong: Callable[..., Any]) -> Callable[..., Any]:
-    @wraps(right)
-    def chosen(*args: Any, **kwargs: Any) -> Any:
-        return (wrong if get_ident() == thread else right)(*args, **kwargs)
+def _only(thread: int, original: Callable[..., Any], faulty: Callable[..., Any]) -> Callable[..., Any]:
+    @wraps(original)
+    def dispatch(*args: Any, **kwargs: Any) -> Any:
+        return (faulty if get_ident() == thread else original)(*args, **kwargs)
 
-    return chosen
+    return dispatch
 
 
 def cells(trial: Trial) -> tuple[Cell, ...]:
@@ -138,8 +138,8 @@ def cells(trial: Trial) -> tuple[Cell, ...]:
 
 def _mechanism(trial: Trial) -> MechanismSubject:
     subject = mechanism.subject(library.mechanism(trial.case))
-    described = replace(subject.described, mechanism=trial.change(subject.described.mechanism))
-    return replace(subject, described=described, points=trial.speeds)
+    altered = replace(subject.described, mechanism=trial.change(subject.described.mechanism))
+    return replace(subject, described=altered, points=trial.speeds)
 
 
 def _turbine(trial: Trial) -> TurbineSubject:
@@ -150,8 +150,10 @@ def _turbine(trial: Trial) -> TurbineSubject:
 
 def _blade(trial: Trial) -> BladeSubject:
     case, variant = _variant(trial)
-    given = case.text.compare
-    compare = msgspec.structs.replace(given, modes=trial.modes or given.modes, motions=trial.motions or given.motions)
+    original = case.text.compare
+    compare = msgspec.structs.replace(
+        original, modes=trial.modes or original.modes, motions=trial.motions or original.motions
+    )
     return BladeSubject(replace(case, text=msgspec.structs.replace(case.text, compare=compare)), variant)
 
 
@@ -184,38 +186,40 @@ def execute(fault: Fault, by_name: Callable[[str], Fault]) -> Control:
     if fault.blinds:
         return _blinding(fault, by_name(fault.blinds))
     assert trial
-    if absent := [description.asked for description in descriptions(trial) if not description.version]:
-        return replace(_control(fault, ()), needs=", ".join(absent))
-    right = faultless(trial)
+    if identifiers := [description.asked for description in descriptions(trial) if not description.version]:
+        return replace(_control(fault, ()), needs=", ".join(identifiers))
+    correct_cells = faultless(trial)
     try:
         with seeded(fault.seams):
-            wrong = cells(trial)
+            faulty_cells = cells(trial)
     except CaseError as error:  # without core's answer there is no run at all
         return _control(fault, (f"{trial.case}, Southwell: {error}",))
-    return _judged(fault, right, wrong)
+    return _judged(fault, correct_cells, faulty_cells)
 
 
-def _blinding(fault: Fault, other: Fault) -> Control:
+def _blinding(fault: Fault, blinded: Fault) -> Control:
     """Result for a fault in judging: another fault is no longer detected, or correct cells are bad."""
-    assert other.trial
-    if absent := [description.asked for description in descriptions(other.trial) if not description.version]:
-        return replace(_control(fault, ()), needs=", ".join(absent))
-    right = faultless(other.trial)
+    assert blinded.trial
+    if identifiers := [description.asked for description in descriptions(blinded.trial) if not description.version]:
+        return replace(_control(fault, ()), needs=", ".join(identifiers))
+    correct_cells = faultless(blinded.trial)
     with seeded(fault.seams):
-        before = cells(other.trial)
-        with seeded(other.seams):
-            after = cells(other.trial)
-    detected = _judged(other, before, after).detected_by
-    bad = _judged(fault, right, before).detected_by
-    return _control(fault, bad if detected else (*bad, f"negative control not detected: {other.name}"))
+        cells_without = cells(blinded.trial)
+        with seeded(blinded.seams):
+            cells_with = cells(blinded.trial)
+    detected = _judged(blinded, cells_without, cells_with).detected_by
+    false_alarms = _judged(fault, correct_cells, cells_without).detected_by
+    return _control(
+        fault, false_alarms if detected else (*false_alarms, f"negative control not detected: {blinded.name}")
+    )
 
 
-def _judged(fault: Fault, right: Sequence[Cell], wrong: Sequence[Cell]) -> Control:
+def _judged(fault: Fault, correct_cells: Sequence[Cell], faulty_cells: Sequence[Cell]) -> Control:
     """Result for a fault from the cells that are bad with it and not without it."""
-    was_bad = {_key(c) for c in right if c.verdict in BAD}
-    bad = [c for c in wrong if c.verdict in BAD and _key(c) not in was_bad]
-    changes = [c.difference for c in bad if c.difference is not None]
-    return replace(_control(fault, tuple(map(_name, bad))), change=max(changes, key=abs, default=None))
+    was_bad = {_key(c) for c in correct_cells if c.verdict in BAD}
+    detections = [c for c in faulty_cells if c.verdict in BAD and _key(c) not in was_bad]
+    changes = [c.difference for c in detections if c.difference is not None]
+    return replace(_control(fault, tuple(map(_name, detections))), change=max(changes, key=abs, default=None))
 
 
 def _key(cell: Cell) -> tuple[str, str, float, int, str, str]:

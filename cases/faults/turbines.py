@@ -41,8 +41,8 @@ TURBINE = Trial("nrel-5mw-turbine", (1.5,), ("exudyn-turbine",), _exaggerated)
 def _assembled(alter: Callable[[Turbine], Turbine]) -> tuple[Seam, ...]:
     """Core assembles a different turbine."""
 
-    def make(right: Any) -> Any:
-        return lambda turbine, *how: right(alter(turbine), *how)
+    def make(original: Any) -> Any:
+        return lambda turbine, *how: original(alter(turbine), *how)
 
     return (solving, "machine", make), (turbine_weights, "machine", make)
 
@@ -51,19 +51,19 @@ def _projected(alter: Callable[[Any], Any]) -> tuple[Seam, ...]:
     return ((equations, "in_ground_frame", alter),)
 
 
-def _frozen(right: Any) -> Any:
+def _frozen(original: Any) -> Any:
     """The azimuth is a constant: its derivatives are missing."""
-    return lambda own, omega, P: right(own, omega, (P[0], 0.0 * P[1], 0.0 * P[2]))
+    return lambda matrices, omega, P: original(matrices, omega, (P[0], 0.0 * P[1], 0.0 * P[2]))
 
 
-def _not_gyroscopic(right: Any) -> Any:
+def _not_gyroscopic(original: Any) -> Any:
     """Multi-blade coordinates without the term 2 Ω M P′."""
 
-    def wrong(own: Any, omega: float, P: Sequence[Any]) -> Any:
-        M, C, K = right(own, omega, P)
-        return M, C - 2.0 * omega * P[0].T @ own[0] @ P[1], K
+    def faulty(matrices: Any, omega: float, P: Sequence[Any]) -> Any:
+        M, C, K = original(matrices, omega, P)
+        return M, C - 2.0 * omega * P[0].T @ matrices[0] @ P[1], K
 
-    return wrong
+    return faulty
 
 
 def _about_top(turbine: Turbine) -> Turbine:
@@ -105,30 +105,30 @@ def plain_ratio(turbine: Turbine) -> Turbine:
 def _answered(alter: Callable[[TurbineModes], TurbineModes]) -> tuple[Seam, ...]:
     """The answer of a code is altered."""
 
-    def make(right: Any) -> Any:
-        def wrong(*args: Any) -> Any:
-            return [answer if isinstance(answer, Failure) else alter(answer) for answer in right(*args)]
+    def make(original: Any) -> Any:
+        def faulty(*args: Any) -> Any:
+            return [answer if isinstance(answer, Failure) else alter(answer) for answer in original(*args)]
 
-        return wrong
+        return faulty
 
     return ((solving, "turbine_answers", make),)
 
 
-def _at_rest(right: Any) -> Any:
-    def wrong(name: str, turbine: Turbine, runs: Sequence[Any], *how: Any) -> Any:
-        return right(name, turbine, [(0.0, elements, count) for _, elements, count in runs], *how)
+def _at_rest(original: Any) -> Any:
+    def faulty(name: str, turbine: Turbine, runs: Sequence[Any], *how: Any) -> Any:
+        return original(name, turbine, [(0.0, elements, count) for _, elements, count in runs], *how)
 
-    return wrong
+    return faulty
 
 
 def _backwards(modes: TurbineModes) -> TurbineModes:
     """The order of the blades is reversed after the first."""
-    tower, first, *others = np.split(modes.shapes, modes.shapes.shape[1] // len(STATIONS), axis=1)
-    return replace(modes, shapes=np.concatenate([tower, first, *others[::-1]], axis=1))
+    tower, first, *blades = np.split(modes.shapes, modes.shapes.shape[1] // len(STATIONS), axis=1)
+    return replace(modes, shapes=np.concatenate([tower, first, *blades[::-1]], axis=1))
 
 
-def _turbine(name: str, what: str, size: str, seams: tuple[Seam, ...], area: Any = "solver") -> Fault:
-    return Fault(f"turbine: {name}", area, what, size, seams, TURBINE)
+def _turbine(name: str, description: str, size: str, seams: tuple[Seam, ...], area: Any = "solver") -> Fault:
+    return Fault(f"turbine: {name}", area, description, size, seams, TURBINE)
 
 
 FAULTS = (

@@ -68,13 +68,13 @@ class Property:
         return f"{self.name}{at}: reader {a} {self.unit}, {second} {b} {self.unit}"
 
 
-def compare(blade: Blade, stations: Stations, stated: tuple[str, ...] = ()) -> tuple[Property, ...]:
+def compare(blade: Blade, stations: Stations, user_stated: tuple[str, ...] = ()) -> tuple[Property, ...]:
     """The largest difference of each property that the second reader reads.
 
     Args:
         blade: as the first reader returns it; it may have more stations.
         stations: the second reading.
-        stated: names of the mounting that the user states in place of the file.
+        user_stated: names of the mounting that the user states in place of the file.
     """
     if not len(stations.s) or not np.isfinite(stations.s).all():
         raise ValueError("the second reading has no stations")
@@ -89,20 +89,20 @@ def compare(blade: Blade, stations: Stations, stated: tuple[str, ...] = ()) -> t
             )
             for k, axis in enumerate("xyz")
         ),
-        *_mounting(blade, stations, stated),
+        *_mounting(blade, stations, user_stated),
     ]
     return tuple(p for p in properties if p is not None)
 
 
-def _matrices(stiffness: Array, mass: Array, other: Stations) -> Iterator[Property | None]:
-    second, s = other.stiffness, other.s
+def _matrices(stiffness: Array, mass: Array, second_stations: Stations) -> Iterator[Property | None]:
+    second, s = second_stations.stiffness, second_stations.s
     for name, (unit, i) in STIFFNESS.items():
         scale = np.maximum(np.abs(_finite(stiffness[:, i, i])), np.abs(_finite(second[:, i, i])))
         yield _worst(name, unit, stiffness[:, i, i], second[:, i, i], scale, s)
     pairs = [(i, j) for i in range(6) for j in range(i)]
     yield _entries("stiffness couplings", "N, N m, N m²", stiffness, second, pairs, s)
     for name, (unit, rows, columns) in INERTIA.items():
-        yield _entries(name, unit, mass, other.mass, [(i, j) for i in rows for j in columns], s)
+        yield _entries(name, unit, mass, second_stations.mass, [(i, j) for i in rows for j in columns], s)
 
 
 def _entries(
@@ -118,9 +118,9 @@ def _entries(
     return max(entries, key=lambda p: p.difference) if entries else None
 
 
-def _mounting(blade: Blade, stations: Stations, stated: tuple[str, ...]) -> Iterator[Property | None]:
+def _mounting(blade: Blade, stations: Stations, user_stated: tuple[str, ...]) -> Iterator[Property | None]:
     for name, unit in MOUNTING.items():
-        if name in stations.mounting and name not in stated:
+        if name in stations.mounting and name not in user_stated:
             first, second = getattr(blade, name), stations.mounting[name]
             yield _whole(name.replace("_", " "), unit, first, second, max(abs(first), abs(second)))
     if "tip_mass" in stations.mounting:
@@ -135,12 +135,12 @@ def _whole(name: str, unit: str, first: float, second: float, scale: float) -> P
 
 def _worst(name: str, unit: str, first: Array, second: Array, scale: float | Array, s: Array) -> Property | None:
     """The station with the largest difference relative to ``scale``; None if the second reader reads no value."""
-    read = ~np.isnan(second)
-    if not read.any():
+    is_read = ~np.isnan(second)
+    if not is_read.any():
         return None
-    gap = np.where((first == second) | ~read, 0.0, np.inf)
-    both = np.isfinite(first) & np.isfinite(second)
-    gap[both] = np.abs(first[both] - second[both])
+    gap = np.where((first == second) | ~is_read, 0.0, np.inf)
+    are_finite = np.isfinite(first) & np.isfinite(second)
+    gap[are_finite] = np.abs(first[are_finite] - second[are_finite])
     size = np.broadcast_to(np.asarray(scale, float), gap.shape)
     relative = np.divide(gap, size, out=np.where(gap > 0, np.inf, 0.0), where=(size > 0) & np.isfinite(gap))
     k = int(np.argmax(relative))

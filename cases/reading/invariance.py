@@ -66,8 +66,8 @@ class Invariance:
 def split(blade: Blade, parts: int) -> Blade:
     """The blade with every interval between stations divided into equal parts; the same properties, curve and kinks."""
     s = blade.stations
-    inner = s[:-1, None] + np.diff(s)[:, None] * np.arange(parts) / parts
-    stations = np.append(inner.ravel(), s[-1])
+    points = s[:-1, None] + np.diff(s)[:, None] * np.arange(parts) / parts
+    stations = np.append(points.ravel(), s[-1])
     rigid = np.isinf(blade.stiffness).any(axis=0)
     stiffness = linear(s, np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness), stations)
     stiffness[:, rigid] = np.inf
@@ -86,8 +86,10 @@ def _splines(blade: Blade, stations: Array) -> Array:
     ends, s = [0.0, *blade.kinks, blade.length], blade.stations
     out = np.empty((len(stations), 3))
     for start, end in pairwise(ends):
-        own, new = (s >= start) & (s <= end), (stations >= start) & (stations <= end)
-        out[new] = make_interp_spline(s[own], blade.curve[own], k=min(3, int(own.sum()) - 1))(stations[new])
+        in_segment, new = (s >= start) & (s <= end), (stations >= start) & (stations <= end)
+        out[new] = make_interp_spline(s[in_segment], blade.curve[in_segment], k=min(3, int(in_segment.sum()) - 1))(
+            stations[new]
+        )
     return out
 
 
@@ -110,14 +112,14 @@ def _section_axes(blade: Blade, _: int) -> tuple[Blade, Blade]:
     if rigid[1] != rigid[2] or rigid[BEND_Y] != rigid[BEND_Z]:
         blade = flexible(blade)
     to = _turned(-ANGLE)
-    turned = replace(
+    rotated = replace(
         blade,
         twist=blade.twist - ANGLE,
         stiffness=_congruent(blade.stiffness, to),
         mass=_congruent(blade.mass, to),
         tip_mass=_congruent(blade.tip_mass, to),
     )
-    return blade, turned
+    return blade, rotated
 
 
 def _rigid(blade: Blade) -> NDArray[np.bool_]:
@@ -155,14 +157,14 @@ def _axis(blade: Blade, parts: int) -> tuple[Blade, Blade]:
     to = np.tile(np.eye(6), (len(local), 1, 1))
     to[:, :3, 3:] = _cross(local)
     tip = to[-1]
-    moved = replace(
+    shifted = replace(
         fine,
         curve=fine.curve + e,
         stiffness=_congruent(fine.stiffness, to),
         mass=_congruent(fine.mass, to),
         tip_mass=tip.T @ fine.tip_mass @ tip,
     )
-    return blade, moved
+    return blade, shifted
 
 
 def _cross(a: Array) -> Array:
@@ -175,20 +177,20 @@ def _cross(a: Array) -> Array:
 def _pieces(blade: Blade, parts: int) -> int:
     """Number of parts of an interval, so that sections turn little between stations."""
     _, axes = placed(Mounted(stations_of(blade), 0.0, 0.0, 0.0, blade.kinks), blade.stations)
-    turn = (Rotation.from_matrix(axes[:-1]).inv() * Rotation.from_matrix(axes[1:])).magnitude()
+    angles = (Rotation.from_matrix(axes[:-1]).inv() * Rotation.from_matrix(axes[1:])).magnitude()
     intervals = len(blade.stations) - 1
-    most = max(MAX_STATIONS // (2 * intervals), 1)
-    return parts * min(int(np.ceil(turn.max() / MAX_TWIST)) or 1, most)
+    limit = max(MAX_STATIONS // (2 * intervals), 1)
+    return parts * min(int(np.ceil(angles.max() / MAX_TWIST)) or 1, limit)
 
 
 def _mirror(flips: Array) -> Callable[[Blade], Blade]:
     """The mirror image: displacements along axes with −1 change their sign, and rotations about the others."""
     strains = np.concatenate([flips, np.prod(flips) * flips])
-    both = np.outer(strains, strains)
+    signs = np.outer(strains, strains)
 
     def alter(blade: Blade) -> Blade:
         off = ~np.eye(6, dtype=bool)
-        factor = np.where(off, both, 1.0)
+        factor = np.where(off, signs, 1.0)
         return replace(
             blade,
             stiffness=np.where(np.isinf(blade.stiffness), blade.stiffness, blade.stiffness * factor),
@@ -206,10 +208,10 @@ def _mirror(flips: Array) -> Callable[[Blade], Blade]:
 def _pitch(blade: Blade, _: int) -> tuple[Blade, Blade]:
     if not clamped(blade):
         raise NotApplicableError("the root is not clamped: its hinge turns with the pitch")
-    about = Rotation.from_rotvec([TILT, 0.0, 0.0])
+    rotation = Rotation.from_rotvec([TILT, 0.0, 0.0])
     return (
         replace(blade, pitch=blade.pitch + TILT),
-        replace(blade, twist=blade.twist + TILT, curve=about.apply(blade.curve)),
+        replace(blade, twist=blade.twist + TILT, curve=rotation.apply(blade.curve)),
     )
 
 
@@ -222,16 +224,16 @@ def _precone(blade: Blade, parts: int) -> tuple[Blade, Blade]:
     if abs(blade.hub_radius * np.sin(cone)) > 0.2 * blade.length:
         raise NotApplicableError("the root is too far from the rotor's plane for a curve that begins there")
     fine = split(coned, _pieces(coned, parts))
-    place, axes = placed(
+    points, axes = placed(
         Mounted(stations_of(fine), fine.hub_radius, fine.precone, fine.pitch, fine.kinks), fine.stations
     )
     plane = fine.hub_radius * np.cos(cone)
-    stated = replace(
-        fine, hub_radius=plane, precone=0.0, pitch=0.0, curve=place - [plane, 0.0, 0.0], twist=np.zeros(len(place))
+    on_curve = replace(
+        fine, hub_radius=plane, precone=0.0, pitch=0.0, curve=points - [plane, 0.0, 0.0], twist=np.zeros(len(points))
     )
-    _, untwisted = placed(Mounted(stations_of(stated), 0.0, 0.0, 0.0, stated.kinks), stated.stations)
+    _, untwisted = placed(Mounted(stations_of(on_curve), 0.0, 0.0, 0.0, on_curve.kinks), on_curve.stations)
     twist = np.unwrap((Rotation.from_matrix(untwisted).inv() * Rotation.from_matrix(axes)).as_rotvec()[:, 0])
-    return coned, replace(stated, twist=twist)
+    return coned, replace(on_curve, twist=twist)
 
 
 def _image(flips: tuple[float, float, float]) -> Callable[[Blade, int], tuple[Blade, Blade]]:

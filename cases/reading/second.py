@@ -26,7 +26,7 @@ class SecondReading:
     stations: Stations | None = None
 
     @property
-    def wrong(self) -> tuple[Property, ...]:
+    def contradictions(self) -> tuple[Property, ...]:
         """Properties that differ."""
         return tuple(p for p in self.properties if not p.agrees)
 
@@ -41,13 +41,13 @@ def read_again(blade: Blade, path: Path, source: Source, mount: Mount) -> Second
             beside a blade file.
         mount: what the user states besides the file.
     """
-    beside = tuple(file for file in source.files if file != path)
+    files = tuple(file for file in source.files if file != path)
     multipliers, offsets = mount.multipliers, mount.offsets is not False
     try:
-        stations = read(source.format, path, Asked(beside, mount.length, mount.subset, multipliers, offsets))
+        stations = read(source.format, path, Asked(files, mount.length, mount.subset, multipliers, offsets))
     except NotInstalledError as error:
         return SecondReading("", missing=str(error))
     except NotReadError as error:
         return SecondReading("", missing=f"{source.format}: {error}")
-    stated = tuple(name for name in ("hub_radius", "precone", "pitch") if getattr(mount, name) is not None)
-    return SecondReading(stations.reader, compare(blade, stations, stated), stations=stations)
+    user_stated = tuple(name for name in ("hub_radius", "precone", "pitch") if getattr(mount, name) is not None)
+    return SecondReading(stations.reader, compare(blade, stations, user_stated), stations=stations)

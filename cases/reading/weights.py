@@ -144,13 +144,13 @@ def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rot
     """
     rows = [_differences(blade, stations, model, rotary) for model in models]
     of_model, expected, last = rows[-1]
-    change, removed, ratio = np.zeros(len(last)), np.zeros(len(last)), 2.0
+    change, extrapolated, ratio = np.zeros(len(last)), np.zeros(len(last)), 2.0
     if len(models) == 2 and models[1].elements > models[0].elements:
         change, ratio = last - rows[0][2], models[1].elements / models[0].elements
-        removed = change / (ratio**2 - 1.0)
-    difference = last + removed
+        extrapolated = change / (ratio**2 - 1.0)
+    difference = last + extrapolated
     couplings = [k for k in COUPLINGS if k < len(last)]
-    kept = {*range(len(last))} - {*couplings} | {*sorted(couplings, key=lambda k: -abs(difference[k]))[:1]}
+    indices = {*range(len(last))} - {*couplings} | {*sorted(couplings, key=lambda k: -abs(difference[k]))[:1]}
     return tuple(
         Weight(
             name,
@@ -164,7 +164,7 @@ def weights(blade: Blade, stations: Stations, models: Sequence[Fingerprint], rot
             order=SLOWEST[k >= len(NAMES)],
         )
         for k, (name, unit) in enumerate((NAMES + BENDS)[: len(last)])
-        if k in kept
+        if k in indices
     )
 
 
@@ -177,10 +177,10 @@ def _differences(blade: Blade, stations: Stations, model: Fingerprint, rotary: b
     moment = mass * (blade.hub_radius + blade.length)
     scale = np.array([mass, moment, moment, moment, inertia])
     if model.flexibility is not None and not np.isnan(stations.stiffness).any():
-        bent = bend(mounted)
-        size = np.sqrt(np.diagonal(bent))
+        flexibility = bend(mounted)
+        size = np.sqrt(np.diagonal(flexibility))
         sizes = np.outer(size, size)[UPPER]
-        of_model, expected = np.append(of_model, model.flexibility), np.append(expected, bent[UPPER])
+        of_model, expected = np.append(of_model, model.flexibility), np.append(expected, flexibility[UPPER])
         scale = np.append(scale, np.where(sizes > 0, sizes, 1.0))  # rigid strains: both are zero
     return of_model, expected, (of_model - expected) / scale
 

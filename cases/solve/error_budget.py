@@ -69,25 +69,25 @@ def solve(case: Case, variant: Variant) -> list[BudgetEntry]:
     printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
     printed_at = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
     omega, count = max(printed_at or variant.speeds.tolist()), 2 * compare.modes + 2
-    right = _solved(blade, omega, FINE, count)
-    if right is None:
+    correct = _solved(blade, omega, FINE, count)
+    if correct is None:
         return []
     rows = []
     for cause, part, altered in _altered(blade, omega, source.elements if source else ELEMENTS, count):
         if altered is not None:
-            changes = changed(right, altered, blade, compare)
+            changes = changed(correct, altered, blade, compare)
             rows += [BudgetEntry(variant.name, omega, mode.name, cause, part, mode.change) for mode in changes]
     return rows
 
 
 def _altered(blade: Blade, omega: float, elements: int, count: int) -> Iterator[Altered]:
-    for what, (mass, stiffness) in WAYS.items():
+    for part, (mass, stiffness) in WAYS.items():
         coarse = _solved(blade, omega, elements, count, mass=mass, stiffness=stiffness)
-        yield "discretisation", f"{what}, {elements} elements", coarse
-    for what, effects in EFFECTS.items():
-        yield "model form", what, _solved(blade, omega, FINE, count, effects)
-    for what, other in _with_other_strains(blade):
-        yield "model form", what, _solved(other, omega, FINE, count)
+        yield "discretisation", f"{part}, {elements} elements", coarse
+    for part, effects in EFFECTS.items():
+        yield "model form", part, _solved(blade, omega, FINE, count, effects)
+    for part, altered_blade in _with_other_strains(blade):
+        yield "model form", part, _solved(altered_blade, omega, FINE, count)
 
 
 def _solved(
@@ -150,26 +150,26 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
 
 @dataclass(frozen=True)
 class ModeChange:
-    """Name and frequencies (rad/s) of one mode with and without the alteration; ``wrong`` is None if no mode corresponds."""
+    """Name and frequencies (rad/s) of one mode with and without the alteration; ``altered`` is None if no mode corresponds."""
 
     name: str
-    right: float
-    wrong: float | None
+    correct: float
+    altered: float | None
 
     @property
     def change(self) -> float | None:
-        """Relative difference of ``wrong`` from ``right``."""
-        return None if self.wrong is None else self.wrong / self.right - 1.0
+        """Relative difference of ``altered`` from ``correct``."""
+        return None if self.altered is None else self.altered / self.correct - 1.0
 
 
-def changed(right: Modes, wrong: Modes, blade: Blade, compare: Compare) -> tuple[ModeChange, ...]:
-    """The modes of ``right`` that a case compares, with names, and the most similar modes of ``wrong``."""
+def changed(correct: Modes, altered: Modes, blade: Blade, compare: Compare) -> tuple[ModeChange, ...]:
+    """The modes of ``correct`` that a case compares, with names, and the most similar modes of ``altered``."""
     weight = weights(blade)
-    right, wrong = aligned(right, weight), aligned(wrong, weight)
-    energies = participation(right, blade)
+    correct, altered = aligned(correct, weight), aligned(altered, weight)
+    energies = participation(correct, blade)
     indices, names = qualifying(energies, compare), numbered(families(energies))
-    partners = [p.mode for p in pair(of_blade(right, weight), of_blade(wrong), indices)]
+    partners = [p.mode for p in pair(of_blade(correct, weight), of_blade(altered), indices)]
     return tuple(
-        ModeChange(names[k], float(right.frequencies[k]), None if p is None else float(wrong.frequencies[p]))
+        ModeChange(names[k], float(correct.frequencies[k]), None if p is None else float(altered.frequencies[p]))
         for k, p in zip(indices, partners, strict=True)
     )

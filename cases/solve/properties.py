@@ -59,7 +59,7 @@ def of_reading(case: str, file: BladeFile | None, blade: Blade) -> tuple[list[Pr
         case, reader, version, "reading", "schema", None, None, "", None, comparison.TARGET, "inconclusive"
     )
     rows += [_because(unsure, violation) for violation in second.stations.violations]
-    same = not second.wrong
+    same = not second.contradictions
     return rows, weighing.resolved(file.blade, second.stations) if same else weighing.stations_of(blade)
 
 

@@ -49,11 +49,11 @@ def solve(variant: Variant, compare: Compare) -> list[FaultEffect]:
     """Solve one blade with every fault at every speed."""
     out = []
     for omega in variant.speeds.tolist():
-        right = {how: _solved("", variant.blade, omega, compare, how) for how in (CONSISTENT, LUMPED)}
+        solutions = {how: _solved("", variant.blade, omega, compare, how) for how in (CONSISTENT, LUMPED)}
         for fault in table.FAST:
             how = DISCRETISATIONS.get(fault, CONSISTENT)
-            faultless, wrong = right[how], _solved(fault, variant.blade, omega, compare, how)
-            modes = changed(faultless, wrong, variant.blade, compare) if faultless and wrong else ()
+            faultless, faulty = solutions[how], _solved(fault, variant.blade, omega, compare, how)
+            modes = changed(faultless, faulty, variant.blade, compare) if faultless and faulty else ()
             out.append(FaultEffect(fault, omega, modes))
     return out
 

@@ -93,10 +93,12 @@ def run(
         CaseError: if added results do not belong to these subjects, or a name occurs twice.
         UnknownCodeError: if a code is unknown.
     """
-    described = _described(codes, asked_about(subjects))
-    unique(subjects, described, user_results)
-    check(user_results, speeds_of_blades(subjects), [c.name for c in described])
-    plans = _tasks(subjects, described, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results, parts)
+    descriptions = _described(codes, asked_about(subjects))
+    unique(subjects, descriptions, user_results)
+    check(user_results, speeds_of_blades(subjects), [c.name for c in descriptions])
+    plans = _tasks(
+        subjects, descriptions, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results, parts
+    )
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
@@ -114,8 +116,8 @@ def run(
                 points, answer = task.subject.points, _answer(future)
                 if isinstance(answer, Failure):
                     for column in [task.column] if task.column else task.columns:
-                        lost, _ = rows[task.subject.name, column.name] = failing(column.head, answer, points)
-                        new = (new[0] + lost, [])
+                        lost_cells, _ = rows[task.subject.name, column.name] = failing(column.head, answer, points)
+                        new = (new[0] + lost_cells, [])
                 elif task.column:
                     rows[task.subject.name, task.column.name] = new = answer
                 else:
@@ -125,8 +127,8 @@ def run(
                     # after all columns: they are short, so that no worker is idle at the end
                     split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
                     weighed = [executor.submit(weigh) for task in plans for weigh in task.properties.tasks]
-                done = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
-                on_progress(Progress(done, total, _running(pending), tuple(new[0]), tuple(new[1])))
+                finished = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
+                on_progress(Progress(finished, total, _running(pending), tuple(new[0]), tuple(new[1])))
         reasons = _diagnosed(plans, rows, executor, {results.name for results in user_results}) if parts else ()
         made_of = [row for task, future in split for row in _parts(task, future.result(), rows)]
         checks = [row for task in plans for row in task.properties.rows]
@@ -138,7 +140,7 @@ def run(
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions(described, user_results),
+        versions=versions(descriptions, user_results),
         settings=tuple(subject.setting() for subject in subjects),
         error_budget=tuple(made_of),
         origins=tuple(
@@ -205,10 +207,10 @@ def _tasks(
     """The task of each subject, with its columns. A code's answers on whether it accepts a blade are divided among them."""
     out, blades = [], 0
     for subject in subjects:
-        asked = [replace(code, refused=code.refused[blades : blades + 1]) for code in codes]
+        descriptions = [replace(code, refused=code.refused[blades : blades + 1]) for code in codes]
         blades += subject.blade is not None
-        columns = dated(subject.columns(asked, limits(subject), user_results), codes)
-        checks = subject.property_checks(asked, limits(subject)) if parts else NOT_CHECKED
+        columns = dated(subject.columns(descriptions, limits(subject), user_results), codes)
+        checks = subject.property_checks(descriptions, limits(subject)) if parts else NOT_CHECKED
         core = subject.references(columns)
         out.append(_Task(subject, columns, core, error_budget=subject.error_budget(), properties=checks))
     return out
@@ -232,13 +234,13 @@ def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
 
 def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:
     """Versions of Python, the packages core needs, each code, and files of results."""
-    ours = {name: version(name) for name in ("southwell", "numpy", "scipy")}
+    own_versions = {name: version(name) for name in ("southwell", "numpy", "scipy")}
     files = {
         results.name: f"{'measured,' if results.measured else 'results'} in {Path(results.path).name}"
         for results in user_results
     }
-    theirs = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}
-    return {"python": python_version(), **ours, **theirs, **files}
+    code_versions = {c.name: c.version or ("unknown" if c.failure else "not installed") for c in codes}
+    return {"python": python_version(), **own_versions, **code_versions, **files}
 
 
 def _running(pending: dict[Future[Any], _Task]) -> tuple[str, ...]:

@@ -208,7 +208,7 @@ def alike(cell: Cell, effects: Sequence[FaultEffect]) -> str:
     candidates: list[tuple[float, str]] = []
     for fault_effect in effects:
         for m in fault_effect.modes:
-            same = m.name.split()[0] == cell.family and abs(m.right / cell.reference - 1.0) < SAME_MODE
+            same = m.name.split()[0] == cell.family and abs(m.correct / cell.reference - 1.0) < SAME_MODE
             if fault_effect.omega == cell.omega and same and m.change is not None:
                 rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):

@@ -95,7 +95,7 @@ def compare(judged_set: JudgedSet, deck: Deck, causes: bool = True) -> Compariso
     """The structural modes of a set beside those of the deck's turbine.
 
     Args:
-        judged: the set.
+        judged_set: the set.
         deck: of its turbine.
         causes: whether causes of the rest are sought.
 

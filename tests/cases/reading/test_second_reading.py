@@ -65,7 +65,7 @@ EXAMPLE = Path(__file__).parents[3] / "examples" / "nrel-5mw-blade.dat"
 def test_both_readings_agree(tmp_path: Path, name: str) -> None:
     repeated = again(*deck(tmp_path, name))
     assert not repeated.missing
-    assert [p.where(repeated.reader) for p in repeated.wrong] == []
+    assert [p.where(repeated.reader) for p in repeated.contradictions] == []
     assert len(repeated.properties) >= 15
     assert max(p.difference for p in repeated.properties) < 1e-9
 
@@ -276,10 +276,10 @@ def test_a_mistake_in_a_reader_is_found_by_the_name_of_the_property(
         unsymmetric(tmp_path / "beamdyn_blade.dat")
     else:
         path, mount = deck(tmp_path, name)
-    assert not again(path, mount).wrong
+    assert not again(path, mount).contradictions
     make(monkeypatch)
     repeated = again(path, mount)
-    assert {p.name for p in repeated.wrong} == expected
+    assert {p.name for p in repeated.contradictions} == expected
 
 
 TABLES = {
@@ -340,7 +340,7 @@ def test_the_reason_names_property_station_and_both_values(tmp_path: Path, monke
     path, mount = deck(tmp_path, "elastodyn_main.dat")
     monkeypatch.setattr(elastodyn, "section_stiffness", exchanged(elastodyn.section_stiffness, 2, 3))
     repeated = again(path, mount)
-    wrong = [p.where(repeated.reader) for p in repeated.wrong]
+    wrong = [p.where(repeated.reader) for p in repeated.contradictions]
     assert [line.partition(" at ")[0] for line in wrong] == ["flapwise stiffness", "edgewise stiffness"]
     assert wrong[1] == EDGEWISE.format(repeated.reader)
 
@@ -348,7 +348,7 @@ def test_the_reason_names_property_station_and_both_values(tmp_path: Path, monke
 def test_a_mount_that_the_user_states_is_not_compared(tmp_path: Path) -> None:
     path, _ = deck(tmp_path, "elastodyn_main.dat")
     repeated = again(path, Mount(hub_radius=3.0, multipliers=(1.0, 1.0, 1.1)))
-    assert not repeated.wrong
+    assert not repeated.contradictions
     assert "hub radius" not in {p.name for p in repeated.properties}
 
 
@@ -361,7 +361,7 @@ def test_a_parser_that_is_not_installed_is_named_with_its_hint(tmp_path: Path, m
     monkeypatch.setattr(second_openfast, "parser", absent)
     repeated = again(path, mount)
     assert repeated.missing.startswith("weio is not installed: pip install '.[readers]'")
-    assert not repeated.wrong
+    assert not repeated.contradictions
 
 
 def test_a_file_that_the_parser_does_not_read_is_no_difference() -> None:
