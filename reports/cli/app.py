@@ -44,12 +44,12 @@ COMMANDS: dict[str, tuple[tuple[str, str, str], ...]] = {
             "Solve blades and turbines with every code, compare the results and write a report.",
         ),
         ("report", "cli.report:command", "Rewrite the report of a finished run from its results.jsonl."),
-        ("pages", "cli.pages:command", "Write a run as HTML, dashboard, and a summary on two pages."),
+        ("pages", "cli.pages:command", "Write the HTML report, the dashboard and a two-page summary of a run."),
         ("cases", "cli.listings:cases", "List the cases that come with the package."),
         (
             "codes",
             "cli.listings:code_app",
-            "List the codes: version, what they share with Southwell's own solver, how to install them.",
+            "List the codes with their versions, what they share with Southwell's own solver, and how to install them.",
         ),
         ("conform", "cli.conform:command", "Run the conformance checks on a code."),
         ("validate", "validation.page:command", "Compare models of measured rotors with their measurements."),
@@ -63,7 +63,7 @@ COMMANDS: dict[str, tuple[tuple[str, str, str], ...]] = {
     "Regression and continuous integration": (
         ("gate", "cli.gate:command", "Compare a run with an earlier one; status 1 if anything got worse."),
         ("history", "cli.history:app", "Record the results of runs by commit."),
-        ("dashboard", "cli.dashboard:command", "Write a static site of one or several runs."),
+        ("dashboard", "cli.dashboard:command", "Write one or several runs as a static web site."),
     ),
 }
 """Name, function and summary of each command by group; the summary is also the first line of the command's help."""
@@ -87,7 +87,8 @@ def build(listing: bool = False) -> App:
         name="southwell",
         help="\n\n".join((*ABOUT, f"Exit status: {listed()}.")),
         help_format="plaintext" if listing else "markdown",  # the library for Markdown takes long to load
-        help_epilogue=f"{ROOT} FOLDER: a file may name files anywhere in FOLDER; {OUTSIDE}: in any folder (any command).",
+        help_epilogue=f"Every command also accepts {ROOT} FOLDER (files may refer to files anywhere in FOLDER) and {OUTSIDE} "
+        "(files may refer to files in any folder).",
         group_commands=last,
         default_parameter=Parameter(negative=(), show_default=_default),
         version=_version,

@@ -38,7 +38,7 @@ def listing() -> int:
 
 @app.command
 def verify() -> int:
-    """Check that every stored answer is as it was written; status 1 if one is not (it would be computed again)."""
+    """Check the integrity of every stored answer; status 1 if one is damaged (a run would compute it again)."""
     opened = _opened()
     bad = opened.damaged()
     total = sum(kept.count for kept in opened.kept())
@@ -53,7 +53,7 @@ def prune(*, days: Positive = 30.0) -> int:
     Parameters
     ----------
     days
-        Answers computed longer ago than this are removed.
+        Age in days above which answers are removed.
     """
     print(f"{_opened().prune(time.time() - days * DAY)} answers removed", file=sys.stdout)
     return PASSED

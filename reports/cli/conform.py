@@ -16,13 +16,13 @@ MARKS = {"pass": "✔", "fail": "✘", "not applicable": "–", "not run": "○"
 def command(code: str, /) -> int:
     """Run the conformance checks on a code.
 
-    The checks are closed forms, symmetries, and whether the adapter ignores an effect that it neither refuses nor declares.
-    Status 1 if a check fails or the code is not installed.
+    The checks compare the code with closed forms and symmetries, and test whether its adapter ignores an effect that it neither
+    declines nor declares. The status is 1 if a check fails or the code is not installed.
 
     Parameters
     ----------
     code
-        Name (`southwell codes`), or import path `module:attribute` of an adapter.
+        Name of a code (listed by `southwell codes`), or import path `module:attribute` of an adapter.
     """
     (described,) = describe([code])
     if described.failure and described.failure.reason.startswith("import: "):

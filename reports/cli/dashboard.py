@@ -18,18 +18,18 @@ def command(
     history: Path | None = None,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-dashboard"),
 ) -> int:
-    """Write a static site of one or several runs.
+    """Write one or several runs as a static web site.
 
     The site needs neither a server nor a network connection.
 
-    Status 3 if a run is incomplete; its pages say so.
+    The status is 3 if a run is incomplete, which its pages state.
 
     Parameters
     ----------
     folders
         Output folders of `southwell verify`, or their results.jsonl.
     history
-        History file (`southwell history add`): adds a page of every frequency, difference and run time by commit.
+        History file (`southwell history add`): adds a page with every frequency and difference by commit.
     out
         Output folder.
     """

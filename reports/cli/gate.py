@@ -44,26 +44,27 @@ def command(
 ) -> int:
     """Compare a run with an earlier one; status 1 if anything got worse.
 
-    Worse means a worse verdict, a missing answer, a seeded fault that is no longer detected or not tried, or a property of a
-    blade that is wrong or no longer checked. Changed frequencies are listed. An incomplete run does not pass: status 3.
+    Worse means a worse verdict, a missing answer, a wider target, a seeded fault that is no longer detected or tried, or a
+    property of a blade that is wrong or no longer checked. Changed frequencies are listed. The status is 3 for an incomplete
+    run.
 
     Parameters
     ----------
     folder
         Output folder of `southwell verify`, or its results.jsonl.
     against
-        History (`southwell history add`), of which the last run counts; or the output folder or results.jsonl of another run.
-        Without it, every failure counts.
+        History (written by `southwell history add`), whose last run is used, or the output folder or results.jsonl of another
+        run. Without this option, every failure counts.
     commit
         Compare with the last run of this commit in the history; its first characters suffice.
     strict
-        Status 1 also if a frequency changed.
+        End with status 1 also if a frequency changed.
     partial
-        The run has only some of the cases or seeded faults; compare only these.
+        Compare only the cases and seeded faults that are in the run.
     failed_baseline
-        Accept an earlier run with failures: they then do not count again.
+        Accept an earlier run with failures; these failures do not count.
     tolerance
-        Largest relative change of a frequency that does not count as a change.
+        Relative change of a frequency above which it counts as changed.
     junit_file
         Output file for JUnit XML, one test case per cell.
     summary

@@ -39,7 +39,8 @@ def add(
     file
         History file; created if it does not exist.
     commit
-        What was run. Default: the commit of the Git checkout in the current folder, with `-dirty` if it has changes.
+        Commit or release of the run. Default: the commit of the Git checkout in the current folder, with `-dirty` if it has
+        changes.
     machine
         Name of the machine. Default: system and processors.
     """

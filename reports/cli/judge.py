@@ -25,19 +25,19 @@ def command(
 ) -> int:
     """Judge linearisations of OpenFAST: find their defects and name their modes.
 
-    Prints the verdict (Yes, No or Open), the findings with their remedies, and the modes in the fixed frame. Status 1 unless
-    the verdict is Yes.
+    The command prints the verdict (Yes, No or Open), the findings with their remedies, and the modes in the fixed frame. The
+    status is 1 unless the verdict is Yes.
 
     Parameters
     ----------
     files
-        Files `case.*.lin`, also compressed (.gz): those with the same stem are the azimuths of one operating point. Tables of
-        modes: .csv, HAWCStab2's .cmb; its .amp with the same stem names the modes.
+        Files `case.*.lin`, also compressed (.gz); files with the same stem are the azimuths of one operating point. Or tables
+        of modes: .csv, or HAWCStab2's .cmb with the .amp of the same stem, which names the modes.
     fst
-        Primary file (.fst) of the turbine: pair the modes with those of Southwell's turbine by shape, and split each difference
-        into the deck's mode shapes and nodes, gravity, deflection, aerodynamics, and the rest with its causes.
+        Primary file (.fst) of the turbine. The modes are paired with those of Southwell's turbine by shape, and each difference
+        is split into the deck's mode shapes and nodes, gravity, deflection, aerodynamics, and the rest with its causes.
     all
-        List all modes, also those of aerodynamics and waves.
+        List all modes, including those of aerodynamics and waves.
     json
         Print JSON: verdict, findings, and the modes of every operating point.
     """

@@ -51,12 +51,13 @@ code_app = App(name="codes", result_action="return_value")
 
 @code_app.default
 def codes(*, pages: Path | None = None) -> int:
-    """List the codes: version, what they share with Southwell's own solver, how to install them.
+    """List the codes with their versions, what they share with Southwell's own solver, and how to install them.
 
     Parameters
     ----------
     pages
-        Output folder of `southwell verify`: write one page per code into it instead, with its worst difference on every blade.
+        Output folder of `southwell verify`. Instead of the list, one page per code is written into the folder, with the
+        worst difference of the code on every blade.
     """
     if pages:
         from ..verification import code_pages
@@ -83,7 +84,7 @@ def install(code: str, /) -> int:
     Parameters
     ----------
     code
-        Name of the code; `southwell codes` shows which need this.
+        Name of the code; `southwell codes` lists the codes that need an isolated environment.
     """
     if code not in ENVIRONMENTS:
         raise UsageError(f"code: {code!r}: no environment of its own: {nearest(code, list(ENVIRONMENTS))}")

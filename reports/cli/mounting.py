@@ -26,21 +26,22 @@ class Mounting:
     main
         Main file that defines how the blade is mounted on the hub (ElastoDyn, BeamDyn, HAWC2 htc).
     length
-        Length from root to tip in m; overrides the files.
+        Length from root to tip in m. Default: as in the files.
     hub_radius
-        Distance from the hub's centre to the root in m, along the coned axis of the blade; overrides the files.
+        Distance from the hub's centre to the root in m, along the coned axis of the blade. Default: as in the files.
     precone
-        Precone in degrees, positive downwind; overrides the files.
+        Precone in degrees, positive downwind. Default: as in the files.
     pitch
-        Pitch in degrees, positive with the leading edge downwind (see --pitch-convention). Default: 0; the BlPitch of an
-        ElastoDyn main file is the initial pitch of a simulation and is listed, not used.
+        Pitch in degrees, positive with the leading edge downwind (see --pitch-convention). Default: 0. BlPitch of an
+        ElastoDyn main file is the initial pitch of a simulation; it is listed as not used.
     pitch_convention
         Sign of --pitch: `southwell`, positive with the leading edge downwind; `openfast`, positive with the leading edge
         upwind (to feather), as BlPitch.
     subset
-        Set and subset of a HAWC2 structural file, as `5:1`.
+        Set and subset of a HAWC2 structural file, for example `5:1`. Default: those of the htc, or the only ones.
     multipliers
-        Mass, flap and edge multipliers in place of an ElastoDyn table's AdjBlMs, AdjFlSt and AdjEdSt, as `1.057344,1,1`.
+        Factors of mass, flapwise and edgewise stiffness that replace AdjBlMs, AdjFlSt and AdjEdSt of an ElastoDyn file, for
+        example `1.057344,1,1`.
     offsets
         Use the offset columns of a FAST 7 table (PrecrvRef, PreswpRef, FlpcgOf, EdgcgOf, FlpEAOf, EdgEAOf). Default: yes.
     """

@@ -20,11 +20,11 @@ DASHBOARD = "dashboard"
 def command(
     folder: Path, /, *, document: str = "", revision: str = "", since: Path | None = None, commit: str = ""
 ) -> int:
-    """Write a run as HTML, dashboard, and a summary on two pages.
+    """Write the HTML report, the dashboard and a two-page summary of a run.
 
-    Files: report.html of an existing report.md, dashboard/index.html, and the summary, which has the verdict, the evidence, a
-    diagram, margins, digests, versions, and what changed since an earlier run:
-    summary.html, and summary.pdf if Typst is installed (extra `pdf`).
+    The files are report.html (if report.md exists), dashboard/index.html, summary.html and, if Typst is installed (extra
+    `pdf`), summary.pdf. The summary has the verdict, the evidence, a diagram, margins, digests, versions, and what changed
+    since an earlier run.
 
     Parameters
     ----------

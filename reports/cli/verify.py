@@ -33,45 +33,48 @@ def command(
 ) -> int:
     """Solve blades and turbines with every code, compare the results and write a report.
 
-    Writes results.jsonl (one row per cell), report.md and figures. Status 1 if a cell fails or is inconclusive, if nothing was
-    compared, if fewer independent groups confirm a blade than its case requires, or if a seeded fault is not detected.
+    The command writes results.jsonl (one row per case, code, speed and mode), report.md and figures. The status is 1 if a row
+    fails or is inconclusive, if nothing was compared, if fewer independent groups confirm a blade than its case requires, or if
+    a seeded fault is not detected.
 
-    Answers are stored as they are computed. After an interruption (status 130), or if the run was killed or the disk is full
-    (status 3), the same command continues. Earlier results are replaced when the new ones are complete.
+    Answers are stored as they are computed. If the run was interrupted (status 130) or killed, or if the disk was full (status
+    3), the same command continues it. Earlier results are replaced when the new ones are complete.
 
     Parameters
     ----------
     case
-        A turbine's file (.fst, .htc, TOML), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), cases by name
-        (`southwell cases`), one blade of a case as `case/blade`, or case files (TOML). Default: all cases. Of a turbine, the
-        lowest eight modes are compared, of a blade the lowest six.
+        Turbine files (.fst, .htc, TOML), blade files (ElastoDyn, BeamDyn, BModes, HAWC2, windIO), names of cases (listed by
+        `southwell cases`), one blade of a case as `case/blade`, or case files (TOML). Default: all cases. The lowest eight
+        modes of a turbine file and the lowest six of a blade file are compared.
     codes
-        Names separated by commas (`southwell codes`), or import paths `module:attribute`. Default: all codes.
+        Names of codes (listed by `southwell codes`) or import paths `module:attribute`, separated by commas. Default: all
+        codes.
     out
-        Output folder; only one run at a time may write in it.
+        Output folder. Only one run at a time may write to it.
     workers
-        Worker processes (default: one per processor), or workers of Slurm.
+        Number of worker processes, or of Slurm workers. Default: one per processor.
     scheduler
-        Address of a Dask scheduler, as `tcp://host:8786`, or `slurm` with `--workers`. Default: processes of this machine.
+        Address of a Dask scheduler, for example `tcp://host:8786`, or `slurm` with `--workers`. Default: processes of this
+        machine.
     add
-        `NAME=FILE.csv`: results of another program as one more column; may be repeated. Columns of the file: `speed [rpm]` (or
-        rad/s, gamma), `frequency [Hz]` (or rad/s, gamma), `mode` (flapwise 1, or a number). Measurements have `measured [Hz]`
-        instead of `frequency [Hz]`, and `uncertainty [%]`: they show how far the model is from the data, and do not
-        affect the verdict.
+        `NAME=FILE.csv`: add the results of another program. May be repeated. The file has the columns `speed [rpm]` (or rad/s,
+        gamma), `frequency [Hz]` (or rad/s, gamma) and `mode` (flapwise 1, or a number). Measurements have the columns `measured
+        [Hz]` and `uncertainty [%]` instead of `frequency [Hz]`; they do not affect the verdict.
     data_uncertainty
-        Standard uncertainty of measured frequencies without one in the file: `1%`.
+        Standard uncertainty of measured frequencies whose file states none, for example `1%`.
     input_uncertainty
-        Standard uncertainty of the computed frequencies due to the blade's properties, for measured rows without one: `2%`.
+        Standard uncertainty of the computed frequencies due to the blade's properties, for measured rows that state none, for
+        example `2%`.
     junit
         Output file for JUnit XML, one test case per cell.
     faults
         Seeded faults to run: `fast` (seven), `all`, `none`, or names separated by commas.
     witnesses
-        Number of independent groups that must confirm each blade. Default: as the case says; none with `--codes`.
+        Number of independent groups that must confirm each blade. Default: the number in the case; 0 with `--codes`.
     time_limit
-        Seconds for one solution by another code. Default: as the case says, otherwise 300.
+        Time limit in seconds for one solution by another code. Default: the limit in the case, otherwise 300.
     memory_limit
-        Memory in GiB for one solution by another code, including the processes that it starts.
+        Memory limit in GiB for one solution by another code, including the processes that it starts.
     rpm
         Rotor speeds of a blade file in rpm: a range `first:last:step` or a list `0,5,10`.
     omega
@@ -80,7 +83,7 @@ def command(
         Change a property of every blade: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone,
         pitch. May be repeated.
     fresh
-        Compute every answer again instead of taking those of earlier runs from the store (`southwell cache`).
+        Compute every answer again instead of reusing the answers of earlier runs (see `southwell cache`).
     blade_only
         Verify one blade of a turbine's .fst or .htc file, clamped at the hub, instead of the whole turbine.
     """

@@ -26,9 +26,9 @@ PAGE, FIGURE = "validation.md", "validation.svg"
 def command(*, out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-report")) -> int:
     """Compare models of measured rotors with their measurements.
 
-    The comparison error E = S - D is set against u_val (ASME V&V 20). The rotors are the Sandia 34 m vertical-axis test
-    bed and the rotating beams of Epps and Chandra. Writes validation.md and Campbell diagrams with the measured points.
-    Takes several minutes. The status is 0 whatever the comparison shows: a measurement is not a code.
+    The comparison error E = S - D is compared with u_val (ASME V&V 20). The rotors are the Sandia 34 m vertical-axis test
+    bed and the rotating beams of Epps and Chandra. The command writes validation.md and Campbell diagrams with the measured
+    points, and takes several minutes. The status is 0 whatever the comparison shows.
 
     Parameters
     ----------

@@ -79,44 +79,46 @@ def command(
 ) -> int:
     """Compute the Campbell diagram of a blade or a turbine and judge its margins.
 
-    An OpenFAST .fst file with a tower and two blades or more, or a HAWC2 .htc file with three or more, gives the modes of the
-    whole turbine.
+    The file of a turbine gives the modes of the whole turbine: an OpenFAST .fst file with a tower and at least two blades, a
+    HAWC2 .htc file with a tower and at least three, or Southwell's TOML.
 
-    Prints the verdict on the margins, then tables of the modes, of the margins to n per revolution (nP), of resonances, and of
-    crossings and veerings. Writes campbell.md, figures of the diagram and of the mode shapes (SVG, PNG), and CSV tables. Speeds
-    are inserted where two modes come close to each other, and the modes are solved at each crossing of nP.
+    The command prints the verdict on the margins, then tables of the modes, of the margins to n per revolution (nP), of
+    resonances, and of crossings and veerings. It writes campbell.md, figures of the diagram and of the mode shapes (SVG, PNG),
+    and CSV tables. Speeds are inserted where two modes come close to each other, and the modes are solved at each crossing of
+    nP.
 
     Parameters
     ----------
     blade
-        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`), one
-        of its blades as `case/blade`, or its TOML file.
+        File of a turbine (.fst, .htc, TOML) or of a blade (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or
+        CSV), or a case (listed by `southwell cases`), one of its blades as `case/blade`, or its TOML file.
     rpm
-        Rotor speeds in rpm: a range `first:last:step` or a list `0,5,10`. Default: the speeds of the case.
+        Rotor speeds in rpm: a range `first:last:step` or a list `0,5,10`. Default: the speeds of the case; for a turbine, up
+        to 1.25 times its rotor speed.
     omega
         Rotor speeds in rad/s, in the same form.
     out
         Output folder; one sub-folder per blade.
     modes
-        Number of modes, from the lowest.
+        Number of modes, from the lowest; twice as many for a turbine.
     per_rev
         Excitation orders n (nP): `1:6` or `1,2,3,6`.
     operating
-        Operating range, as `6.9:12.1`, in the unit of the speeds. Margins are judged over it.
+        Operating range in the unit of the speeds, for example `6.9:12.1`. Margins are judged over this range.
     margin
         Required distance from nP over the operating range: relative to nP (`10%`, `10` or `0.1`), or absolute (`5Hz`).
     elements
         Number of beam elements of equal length. Default: at each speed as many as --accuracy requires.
     accuracy
-        Largest relative uncertainty of a frequency, without --elements.
+        Largest relative uncertainty of a frequency; not used with --elements.
     allow_large_strain
         Accept steady strains above 20 %.
     azimuth
-        Azimuth in degrees, 0 with the blade up and positive in the direction of rotation: adds gravity as the steady load at
-        this azimuth, where the blade is frozen. Default: no gravity.
+        Azimuth in degrees, 0 with the blade up and positive in the direction of rotation. Gravity is added as a steady load
+        on the blade frozen at this azimuth. Default: no gravity.
     tilt
-        Tilt of the rotor axis in degrees, positive with the upwind end raised, as the tilt of an upwind rotor (OpenFAST's
-        ShftTilt has the opposite sign); with --azimuth.
+        Tilt of the rotor axis in degrees, positive with the upwind end raised (OpenFAST's ShftTilt has the opposite sign).
+        Requires --azimuth.
     load
         CSV table of a steady load: `fraction [-]`, `fx [N/m]`, `fy [N/m]`, `fz [N/m]`, in hub axes (x along the blade, y in
         the direction of motion, z along the rotor axis).
@@ -126,24 +128,25 @@ def command(
         Change a property: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone, pitch. May be
         repeated.
     against
-        Another blade; adds a table of changes of every frequency.
+        Another blade; adds a table of the change of every frequency relative to it.
     add
         `NAME=FILE.csv`: frequencies of a test rig (`measured [Hz]`) or of another program (`frequency [Hz]`), drawn over the
-        lines; may be repeated. `southwell verify --add` compares them.
+        lines. May be repeated. `southwell verify --add` compares them with the solver.
     data_uncertainty
-        Standard uncertainty of measured frequencies without one in the file: `1%`.
+        Standard uncertainty of measured frequencies whose file states none, for example `1%`.
     verify
-        Run all codes on the blade at the ends of the operating range; adds the uncertainty of each line and the independent
-        codes that confirm it.
+        Solve the blade with all codes at the ends of the operating range, and add the uncertainty of each line and the
+        independent codes that confirm it.
     strict
-        Status 1 if a margin is violated or could not be judged.
+        End with status 1 if a margin is violated or could not be judged.
     html
-        Also write campbell.html: one file with its figures; and campbell-interactive.html with the extra `interactive`
-        (Plotly): hover for frequency, uncertainty and confirming codes, zoom, hide lines, animated mode shapes.
+        Also write campbell.html, one file that includes its figures, and, with the extra `interactive` (Plotly),
+        campbell-interactive.html: frequencies, uncertainties and confirming codes under the pointer, zoom, lines that can be
+        hidden, and animated mode shapes.
     pdf
         Also write campbell.pdf; requires the extra `pdf` (Typst).
     blade_only
-        Of a turbine (.fst, .htc), solve one blade clamped at the hub.
+        Solve one blade of a turbine (.fst, .htc), clamped at the hub, instead of the whole turbine.
     """
     if strict and operating is None:
         raise UsageError("--strict: margins are judged over an operating range: add --operating, as in 6.9:12.1")

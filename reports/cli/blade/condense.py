@@ -31,15 +31,15 @@ def command(
 ) -> int:
     """Condense finite element matrices of a blade to a multibody model.
 
-    The model has rigid bodies and complex stiffness elements. Prints segments and modes; writes segments.json and
-    condensation.md, which `southwell report` includes if it is in the folder of the report.
+    The model consists of rigid bodies and complex stiffness elements. The command prints segments and modes, and writes
+    segments.json and condensation.md. `southwell report` includes condensation.md if it is in the folder of the report.
 
     Parameters
     ----------
     file
         TOML file that names matrices, nodes and sections, or segments.json of an earlier run.
     omega
-        Rotor speeds in rad/s: one, a range `first:last:step` or a list `0,5,10`. Default: at rest.
+        Rotor speeds in rad/s: one speed, a range `first:last:step` or a list `0,5,10`. Default: 0.
     rpm
         Rotor speeds in rpm, in the same form.
     modes

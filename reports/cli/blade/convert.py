@@ -47,16 +47,17 @@ def command(
 ) -> int:
     """Write a blade in another format.
 
-    A blade that the format cannot represent is refused. TOML represents any blade; BeamDyn (two files) curved and coupled
-    blades with a clamped root and no tip mass; ElastoDyn straight, uncoupled blades without axial, torsional and rotary-inertia
-    properties. Damping, mode shapes and pitch axis are copied where the format has them, and listed otherwise.
+    A blade that the format cannot represent is refused. TOML represents any blade. BeamDyn (two files) represents curved and
+    coupled blades with a clamped root and no tip mass. ElastoDyn represents straight, uncoupled blades without axial, torsional
+    and rotary-inertia properties. Damping, mode shapes and pitch axis are copied if the format has them, and listed otherwise.
 
     Parameters
     ----------
     blade
-        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`).
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (listed by
+        `southwell cases`).
     out
-        Output file; must not exist.
+        Output file, which must not exist.
     to
         Output format. Default: TOML if the file ends in .toml.
     rpm

@@ -52,16 +52,16 @@ def modes(
     Parameters
     ----------
     case
-        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`), one
-        of its blades as `case/blade`, or its TOML file; or the file of a tower (ElastoDyn, BModes, Southwell's TOML).
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), tower file (ElastoDyn, BModes,
+        Southwell's TOML), or a case (listed by `southwell cases`), one of its blades as `case/blade`, or its TOML file.
     omega
-        Rotor speeds in rad/s: one, a range `first:last:step` or a list `0,5,10`. Default: the speeds of the file or case.
+        Rotor speeds in rad/s: one speed, a range `first:last:step` or a list `0,5,10`. Default: the speeds of the file or case.
     rpm
         Rotor speeds in rpm, in the same form.
     elements
         Number of beam elements of equal length. Default: as many as --accuracy requires.
     accuracy
-        Largest relative uncertainty of a frequency, without --elements.
+        Largest relative uncertainty of a frequency; not used with --elements.
     modes
         Number of modes, from the lowest.
     allow_large_strain
@@ -73,7 +73,7 @@ def modes(
         Change a property: `EI_flap=*1.1`, also EI_edge, GJ, EA, mass, tip_mass, twist, hub_radius, precone, pitch. May be
         repeated.
     against
-        Another blade; prints the change of every frequency.
+        Another blade; prints the change of every frequency relative to it.
     tower
         Solve the tower in a file that also has a blade (HAWC2 htc, windIO, Southwell's TOML).
     """
@@ -151,7 +151,7 @@ def mechanism(
     Parameters
     ----------
     name
-        A mechanism by name (`southwell cases`), or a TOML file of bodies and joints.
+        Name of a mechanism (listed by `southwell cases`), or a TOML file of bodies and joints.
     modes
         Number of modes, from the lowest.
     time
@@ -159,7 +159,7 @@ def mechanism(
     allow_large_strain
         Accept steady strains of beams above 20 %.
     json
-        Print JSON; relative_uncertainty of a frequency (and, absolute, of its damping ratio) is that of rounding.
+        Print JSON. relative_uncertainty is the effect of rounding on a frequency (relative) and its damping ratio (absolute).
     """
     described = library.mechanism(name)
     solution = described.solve(modes, time, allow_large_strain)

@@ -48,12 +48,13 @@ def command(
 ) -> int:
     """Show the mass, sections and axes of a blade, and how its file was read.
 
-    Lists every non-zero quantity of the file that is not used.
+    Every non-zero quantity of the file that is not used is listed.
 
     Parameters
     ----------
     blade
-        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (`southwell cases`).
+        Blade file (ElastoDyn, BeamDyn, BModes, HAWC2, windIO, Southwell's TOML or CSV), or a case (listed by
+        `southwell cases`).
     out
         Output folder for a figure of the properties along the span (SVG, PNG) and CSV tables of all stations and loads.
     all
@@ -62,7 +63,7 @@ def command(
         Print the steady force and moment at the root at the speeds of --rpm or --omega, or of the case, in vacuo and without
         gravity.
     rpm
-        Rotor speeds in rpm: one, a range `first:last:step` or a list `0,5,10`.
+        Rotor speeds in rpm: one speed, a range `first:last:step` or a list `0,5,10`.
     omega
         Rotor speeds in rad/s, in the same form.
     """

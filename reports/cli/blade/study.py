@@ -43,9 +43,9 @@ def command(
 ) -> int:
     """Solve sampled variants of blades at many speeds.
 
-    Writes one row per blade, sample, speed and mode to a JSON Lines file as soon as a sample is solved. An interrupted study
-    (status 130), or one that was killed (status 3), continues with the same command. Status 1 if a speed of a sample has no
-    frequency; its row has the reason.
+    One row per blade, sample, speed and mode is written to a JSON Lines file as soon as the sample is solved. A study that was
+    interrupted (status 130) or killed (status 3) continues with the same command. The status is 1 if a sample has no frequency
+    at a speed; its row has the reason.
 
     Parameters
     ----------
@@ -55,9 +55,10 @@ def command(
         Output file: `.jsonl`, or `.parquet`, which is written from the `.jsonl` file of the same name when the study is
         complete.
     workers
-        Worker processes, or workers of Slurm. Default: one per processor.
+        Number of worker processes, or of Slurm workers. Default: one per processor.
     scheduler
-        Address of a Dask scheduler, as `tcp://host:8786`, or `slurm` with `--workers`. Default: processes of this machine.
+        Address of a Dask scheduler, for example `tcp://host:8786`, or `slurm` with `--workers`. Default: processes of this
+        machine.
     summary
         Print mean, standard deviation and percentiles of every frequency over the samples.
     """
