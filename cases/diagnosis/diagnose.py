@@ -81,7 +81,7 @@ class Diagnosis:
         if self.cause:
             alternatives = "".join(f"; or {described(cause.changes)}" for cause in self.ties)
             changes = f"{described(self.cause.changes)} ({self._remainder(self.cause)})"
-        return f"{first}as Southwell's own solver {changes}{alternatives}"
+            return f"{first}as Southwell's own solver {changes}{alternatives}"
         hint = f"; {self.indication}" if self.indication else ""
         return f"{first}no known cause of {percent(self.largest)}{hint}"
 
