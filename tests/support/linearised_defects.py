@@ -159,9 +159,9 @@ def exchanged_blades(values: bool = True) -> list[Lin]:
     return out
 
 
-def stiff_blade() -> list[Lin]:
-    """Blade 2 is 5 % stiffer flapwise."""
-    return healthy(replace(MACHINE, flap_factor=(1.0, 1.05, 1.0)))
+def stiff_blade(factor: float = 1.05) -> list[Lin]:
+    """Blade 2 is stiffer flapwise by a factor."""
+    return healthy(replace(MACHINE, flap_factor=(1.0, factor, 1.0)))
 
 
 def reversed_pitch() -> list[Lin]:

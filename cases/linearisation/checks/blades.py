@@ -15,7 +15,7 @@ Array = NDArray[np.float64]
 MIN_DIFFERENCE = 0.01
 """Smallest difference between blades that is reported, relative to the entry."""
 
-MIN_DIFFERENCE = 1e-3
+MIN_COUPLING = 1e-3
 """Couplings smaller than this, relative to the stiffnesses that they couple, are left out."""
 
 
@@ -61,7 +61,7 @@ def differences(azimuth_set: AzimuthSet) -> tuple[Difference, ...]:
             )
             size = float(np.sqrt(diagonal[i] * diagonal[j]))
             mean = np.abs(values).mean()
-            if not size or mean < MIN_DIFFERENCE * size:
+            if not size or mean < MIN_COUPLING * size:
                 continue
             odd = _odd_blade(psi, values, half_unit)
             if odd:

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import pytest
 
 from southwell.cases.linearisation.findings import DEFECT, LIMIT
-from southwell.tests.support.linearised_defects import DEFECTS, HEALTHY, Defect, healthy
+from southwell.tests.support.linearised_defects import DEFECTS, HEALTHY, Defect, healthy, stiff_blade
 from southwell.tests.support.linearised_machines import Lin, without
 from southwell.tests.support.linearised_page import PAGE, findings_of, row
 
@@ -26,6 +26,11 @@ def test_a_planted_defect_is_found_by_its_name_alone(defect: Defect) -> None:
     assert set(defect.names) & {finding.name for finding in own}
     assert {finding.name for finding in own if finding.level == DEFECT} <= set(defect.names)
     assert row(defect, own) in PAGE.read_text(encoding="utf-8")
+
+
+def test_blades_are_equal_within_a_percent() -> None:
+    assert "unequal blades" not in findings(stiff_blade(1.005))
+    assert "unequal blades" in findings(stiff_blade(1.02))
 
 
 def test_limits_of_the_evidence() -> None:
