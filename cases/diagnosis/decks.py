@@ -51,7 +51,7 @@ def _elastodyn(file: BladeFile) -> tuple[Hypothesis, ...]:
     of_blade = next((text for text in texts if elastodyn.is_blade(text)), None)
     if main is None or of_blade is None or "bldnodes" not in keys(main):
         return ()
-    shapes = mode_shapes.of_blade(of_blade)
+    shapes = mode_shapes.read(of_blade, mode_shapes.BLADE)
     count = integer(main, keys(main), "BldNodes")
     if not shapes or count < 1:
         return ()

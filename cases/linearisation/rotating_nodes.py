@@ -9,6 +9,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from ...core.space.spatial import skew
 from .sets import AzimuthSet
 
 Array = NDArray[np.float64]
@@ -74,8 +75,7 @@ def rotated(azimuth_set: AzimuthSet, A: Array) -> Array:
     for k in range(len(A)):
         S, turning = np.eye(len(azimuth_set.states)), np.zeros_like(A[k])
         for t in triplets(azimuth_set):
-            w = omega[t.blade][k]
-            cross = np.array([[0.0, -w[2], w[1]], [w[2], 0.0, -w[0]], [-w[1], w[0], 0.0]])
+            cross = skew(omega[t.blade][k])
             S[np.ix_(t.rates, t.displacements)] = -cross
             turning[np.ix_(t.displacements, t.displacements)] = -cross
             turning[np.ix_(t.rates, t.rates)] = -cross

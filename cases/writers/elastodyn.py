@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from ...core.blade import AXIAL, BEND_Y, BEND_Z, SHEAR_Y, SHEAR_Z, TORSION, Blade, straight
 from ..input import atomic
 from ..input.errors import CaseError
-from ..input.readers.openfast.elastodyn import COLUMNS, MULTIPLIERS
+from ..input.readers.openfast.elastodyn import LAYOUT
 from ..input.readers.openfast.elastodyn_unused import DAMPING
 from ..input.readers.source import Mount, Unused
 from ..input.readers.text import fortran
@@ -67,7 +67,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
             diagonal[:, BEND_Z],
         ]
     )
-    columns = [*COLUMNS]
+    columns = [*LAYOUT.columns]
     units = ["(-)", "(-)", "(deg)", "(kg/m)", "(Nm^2)", "(Nm^2)"]
     lines = [
         "------- ELASTODYN V1.00.* INDIVIDUAL BLADE INPUT FILE --------------------------",
@@ -79,7 +79,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
             for x, name in zip(damping, DAMPING.split(", "), strict=True)
         ),
         "---------------------- BLADE ADJUSTMENT FACTORS --------------------------------",
-        *(f"1.0  {name} - Multiplier (-)" for name in ("FlStTunr(1)", "FlStTunr(2)", *MULTIPLIERS)),
+        *(f"1.0  {name} - Multiplier (-)" for name in ("FlStTunr(1)", "FlStTunr(2)", *LAYOUT.multipliers)),
         "---------------------- DISTRIBUTED BLADE PROPERTIES ----------------------------",
         "  ".join(f"{name:>23}" for name in columns),
         "  ".join(f"{name:>23}" for name in units),

@@ -19,7 +19,7 @@ from ..errors import CaseError
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
 from .openfast.elastodyn import complete
 from .source import OPENFAST_AXES, Mount, Reading, Source
-from .text import Table, Text, fractions, integer, keys, leading, load, table, value, word
+from .text import Table, Text, first_numbers, fractions, integer, keys, load, path_named, table, value
 
 Array = NDArray[np.float64]
 Entries = dict[str, tuple[int, str]]
@@ -62,7 +62,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(
             f"{main.at(entries['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade, or use `southwell modes`"
         )
-    sections = section_table(main, entries)
+    sections = section_table(main)
     text = sections.text
     sections.positive("mass_den", "flp_stff", "edge_stff", "tor_stff", "axial_stff")
     sections.positive("flp_iner", "edge_iner", zero=True)
@@ -109,19 +109,16 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     return Reading(blade, Source(NAME, (path, text.path), axes, _notes(p, entries, main)), speed)
 
 
-def section_table(main: Text, entries: Entries) -> Table:
+def section_table(main: Text) -> Table:
     """The table ``COLUMNS`` of the file that a main file names.
 
     Raises:
         CaseError: naming the file and line at fault.
     """
-    text = load(main.path.parent / word(main, entries, "sec_props_file").replace("\\", "/"))
+    text = load(path_named(main, "sec_props_file"))
     own = keys(text)
     count = integer(text, own, "n_secs")
-    start = own["n_secs"][0] + 1
-    while start < len(text.lines) and not leading(text.lines[start]):
-        start += 1
-    return table(text, start, count, COLUMNS)
+    return table(text, first_numbers(text, own["n_secs"][0] + 1), count, COLUMNS)
 
 
 def _notes(p: dict[str, Array], entries: Entries, main: Text) -> tuple[str, ...]:

@@ -56,7 +56,7 @@ def read(path: Path) -> tuple[Tower, Source]:
     """
     main = load(path)
     entries = keys(main)
-    rows = bmodes.section_table(main, entries)
+    rows = bmodes.section_table(main)
     rows.positive("mass_den", "flp_stff", "tor_stff", "axial_stff")
     rows.positive("flp_iner", zero=True)
     jumps = _jumps(rows["sec_loc"])

@@ -20,6 +20,10 @@ HAWC2 = np.array([[0.0, 0.0, 1.0], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
 """Rotation of a vector from HAWC2's blade axes (x to the leading edge, y downwind, z along the blade) to ours."""
 
 
+UPPER = np.triu_indices(6)
+"""Rows and columns of the upper triangle, row by row."""
+
+
 def in_axes(matrix: Array, axes: Array) -> Array:
     """Transform matrices (…, 6, 6) to our axes; ``axes`` (…, 3, 3) is the rotation from the original axes to ours."""
     rotation = np.zeros((*axes.shape[:-2], 6, 6))
@@ -56,6 +60,20 @@ def rigid(stiffness: Array, *strains: int) -> Array:
     for i in strains:
         out[:, i, :] = out[:, :, i] = 0.0
         out[:, i, i] = np.inf
+    return out
+
+
+def between(r: Array, values: Array, at: Array) -> Array:
+    """Matrices (n, 6, 6) interpolated linearly from their positions ``r`` (n,) to ``at``, as in ``core``."""
+    k = np.clip(np.searchsorted(r, at, side="right") - 1, 0, len(r) - 2)
+    t = np.clip((at - r[k]) / (r[k + 1] - r[k]), 0.0, 1.0)[:, None, None]
+    return (1.0 - t) * values[k] + t * values[k + 1]
+
+
+def symmetric(upper: Array) -> Array:
+    """Matrices (n, 6, 6) from the rows of their upper triangles (n, 21)."""
+    out = np.zeros((len(upper), 6, 6))
+    out[:, UPPER[0], UPPER[1]] = out[:, UPPER[1], UPPER[0]] = upper
     return out
 
 

@@ -16,8 +16,10 @@ from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError
 from ....core.blade_checks import MAX_LENGTH
+from ....core.space.spatial import skew
 from .. import files
 from ..errors import CaseError, FilesMissingError
+from .matrices import UPPER, symmetric
 from .source import BladeFile, Reading, Unused
 
 Array = NDArray[np.float64]
@@ -27,7 +29,6 @@ Upper = Annotated[list[float], Meta(min_length=21, max_length=21)]
 
 STRAINS = ("axial", "shear_y", "shear_z", "torsion", "bend_y", "bend_z")
 HINGES = {"clamped": (), "flap hinge": (4,), "lag hinge": (5,), "both hinges": (4, 5)}
-UPPER = np.triu_indices(6)
 
 
 class Springs(Struct, frozen=True, forbid_unknown_fields=True):
@@ -53,8 +54,7 @@ class TipMass(Struct, frozen=True, forbid_unknown_fields=True):
 
     def matrix(self) -> Array:
         """Inertia (6, 6) of the rigid body about the tip."""
-        x, y, z = self.offset
-        cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+        cross = skew(np.array(self.offset))
         xx, yy, zz, xy, yz, zx = self.inertia
         tensor = np.array([[xx, xy, zx], [xy, yy, yz], [zx, yz, zz]])
         m = self.mass
@@ -269,13 +269,6 @@ def springs(root: str | Springs) -> Array:
     return out
 
 
-def symmetric(upper: Array) -> Array:
-    """Matrices (n, 6, 6) from the rows of their upper triangles (n, 21)."""
-    out = np.zeros((len(upper), 6, 6))
-    out[:, UPPER[0], UPPER[1]] = out[:, UPPER[1], UPPER[0]] = upper
-    return out
-
-
 def describe(blade: Blade) -> Sections:
     """Describe a blade by full sections."""
     finite = np.where(np.isinf(blade.stiffness), 0.0, blade.stiffness)
@@ -301,7 +294,7 @@ def describe(blade: Blade) -> Sections:
 def _body(matrix: Array) -> TipMass:
     m = float(matrix[0, 0])
     x, y, z = -np.array([matrix[4, 2], matrix[5, 0], matrix[3, 1]]) / m if m else np.zeros(3)  # of m c×, lower left
-    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    cross = skew(np.array([x, y, z]))
     t = matrix[3:, 3:] + m * cross @ cross
     entries = (t[0, 0], t[1, 1], t[2, 2], t[0, 1], t[1, 2], t[2, 0])
     return TipMass(mass=m, offset=(float(x), float(y), float(z)), inertia=tuple(float(e) for e in entries))  # pyright: ignore[reportArgumentType]

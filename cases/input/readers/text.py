@@ -81,6 +81,11 @@ def leading(line: str) -> list[float]:
     return out
 
 
+def first_numbers(text: Text, k: int) -> int:
+    """The first line from ``k`` on that begins with a number; the number of lines if there is none."""
+    return next((j for j in range(k, len(text.lines)) if leading(text.lines[j])), len(text.lines))
+
+
 def row(text: Text, k: int, columns: Sequence[str]) -> list[float]:
     """The numbers on line ``k``, one per column; words may follow.
 
@@ -247,6 +252,28 @@ def _name(text: Text, entries: dict[str, tuple[int, str]], names: Iterable[str])
     raise CaseError(
         f"{text.path}: {names[0]}: missing: {cause} add it, the value before its name (`1.0 {names[0]} - …`)"
     )
+
+
+def number_or(text: Text, name: str, otherwise: float) -> float:
+    """The finite number under a name, or ``otherwise`` if there is none."""
+    entry = keys(text).get(name.lower())
+    out = number(entry[1]) if entry else None
+    return out if out is not None and math.isfinite(out) else otherwise
+
+
+def flag(text: Text, name: str) -> bool:
+    """Whether the value under a name is true; False if it is missing."""
+    entry = keys(text).get(name.lower())
+    return entry is not None and entry[1].lower().strip(".") in ("true", "t")
+
+
+def path_named(text: Text, *names: str) -> Path:
+    """The path under the first of ``names`` that is present, relative to the folder of the file.
+
+    Raises:
+        CaseError: if none is present.
+    """
+    return text.path.parent / word(text, keys(text), *names).replace("\\", "/")
 
 
 def fortran(x: float) -> str:

@@ -28,7 +28,7 @@ from scipy.interpolate import CubicSpline, PchipInterpolator, make_interp_spline
 
 from ....core.blade import AXIAL, SHEAR_Y, SHEAR_Z, TORSION
 from ..errors import CaseError
-from .matrices import fault, mass_fault, rigid
+from .matrices import UPPER, fault, mass_fault, rigid, symmetric
 from .openfast import beamdyn
 from .openfast.beamdyn_axis import Axis, measured
 from .openfast.elastodyn import complete
@@ -39,7 +39,6 @@ from .yaml_fields import Field, fields
 Array = NDArray[np.float64]
 
 NAME = "windIO"
-UPPER = np.triu_indices(6)
 ENTRIES = tuple(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True))
 STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
 """Entries that may be missing or zero in a file, and the strain that is then rigid, in the order of ``core.blade``."""
@@ -182,7 +181,7 @@ def _rows(elastic: Field) -> SectionLists:
         rows = elastic.get(key)
         grids.append(_grid(rows))
         field = rows.get("values")
-        matrices.append(_full(_paired(field.rows(21), field, rows)))
+        matrices.append(symmetric(_paired(field.rows(21), field, rows)))
     at = elastic.get("stiff_matrix", "values")
     stiffness, zero_strains = _loose(matrices[0], at)
     mass = _checked(matrices[1], mass_fault, elastic.get("inertia_matrix", "values"))
@@ -200,7 +199,7 @@ def _lists(elastic: Field) -> SectionLists:
             entries[:, k] = _paired(field.numbers(), field, matrix)
         elif key[1] == key[2] and key not in STRAINS:
             raise CaseError(f"{matrix.at}: no {key}: a blade must resist bending; add it")
-    stiffness, zero_strains = _loose(_full(entries), matrix)
+    stiffness, zero_strains = _loose(symmetric(entries), matrix)
     stiffness = _checked(stiffness, fault, matrix.get("grid"))
     inertia = elastic.get("inertia_matrix")
     grids.append(_grid(inertia))
@@ -242,12 +241,6 @@ def _mass(inertia: Field) -> Array:
     out += np.triu(out, 1).swapaxes(1, 2)
     out[:, 3, 3], out[:, 4, 4] = edge, flap
     out[:, 5, 5] = column("i_plr") if inertia.find("i_plr") else edge + flap
-    return out
-
-
-def _full(upper: Array) -> Array:
-    out = np.zeros((len(upper), 6, 6))
-    out[:, UPPER[0], UPPER[1]] = out[:, UPPER[1], UPPER[0]] = upper
     return out
 
 

@@ -12,7 +12,7 @@ from ...input.readers.openfast import elastodyn, elastodyn_tower, fst, mode_shap
 from ...input.readers.openfast import turbine as reader
 from ...input.readers.openfast.mode_shapes import Shape
 from ...input.readers.source import Mount
-from ...input.readers.text import integer, keys, load, value
+from ...input.readers.text import integer, keys, load, number_or, value
 
 
 @dataclass(frozen=True)
@@ -63,12 +63,12 @@ def read(path: Path) -> Deck:
         return Deck(
             reading.turbine,
             float(np.radians(value(main, entries, "ShftTilt"))),
-            mode_shapes.of_blade(load(blade)) if compelast == "1" else {},
-            mode_shapes.of_tower(load(elastodyn_tower.tower_file(main))),
+            mode_shapes.read(load(blade), mode_shapes.BLADE) if compelast == "1" else {},
+            mode_shapes.read(load(elastodyn_tower.tower_file(main)), mode_shapes.TOWER),
             integer(main, entries, "BldNodes") if "bldnodes" in entries else 0,
             integer(main, entries, "TwrNodes") if "twrnodes" in entries else 0,
             value(main, entries, "DTTorSpr"),
-            mode_shapes.number_or(main, "DTTorDmp", 0.0),
+            number_or(main, "DTTorDmp", 0.0),
             float(pitch),
         )
 

@@ -19,10 +19,10 @@ from numpy.typing import NDArray
 
 from .....core.blade import Blade, BladeError
 from ...errors import CaseError
-from ..matrices import HAWC2, about, bending, fault, in_axes, rotated, shearing
+from ..matrices import HAWC2, about, bending, between, fault, in_axes, rotated, shearing, symmetric
 from ..openfast.elastodyn import complete
 from ..source import Mount, Reading, Source
-from ..text import ROUNDING, Table, Text, leading, load, table
+from ..text import ROUNDING, Table, Text, first_numbers, leading, load, table
 from . import bodies
 from .orientation import mounting
 from .parts import of_file
@@ -32,8 +32,7 @@ Array = NDArray[np.float64]
 NAME = "HAWC2"
 SHARED = ("r", "m", "x_cg", "y_cg", "ri_x", "ri_y")
 PLAIN = (*SHARED, "x_sh", "y_sh", "E", "G", "I_x", "I_y", "I_p", "k_x", "k_y", "A", "pitch", "x_e", "y_e")
-UPPER = np.triu_indices(6)
-FULL = (*SHARED, "pitch", "x_e", "y_e", *(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True)))
+FULL = (*SHARED, "pitch", "x_e", "y_e", *(f"K{i + 1}{j + 1}" for i, j in zip(*np.triu_indices(6), strict=True)))
 AXES = (
     "HAWC2: x to the leading edge, y downwind, z along the blade; here x = its z, y = its x, z = its y, twist alike; "
     "matrices brought from elastic, shear and mass centres to the half-chord line"
@@ -134,7 +133,7 @@ def contents(path: Path, mount: Mount) -> Contents:
         htc = load(mount.main)
     if htc is not None:
         commands = bodies.commands(htc)
-        body = bodies.blade_body(htc, commands)
+        body = bodies.body_named(htc, commands, "blade")
         file_mount = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
         file, stated_subset = bodies.properties(htc, body)
         subset = subset or stated_subset
@@ -161,13 +160,6 @@ def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, 
     return columns["r"], stiffness_of(columns), mass_of(columns)
 
 
-def between(r: Array, values: Array, at: Array) -> Array:
-    """Sections (n, 6, 6) interpolated linearly from their r to the positions ``at``, as in ``core``."""
-    k = np.clip(np.searchsorted(r, at, side="right") - 1, 0, len(r) - 2)
-    t = np.clip((at - r[k]) / (r[k + 1] - r[k]), 0.0, 1.0)[:, None, None]
-    return (1.0 - t) * values[k] + t * values[k + 1]
-
-
 def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     heads, current = {}, 1
     for k, line in enumerate(text.lines):
@@ -185,7 +177,7 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
         raise CaseError(f"{text.path}: no set {subset[0]}, subset {subset[1]}: it has {names}: correct --subset")
     k, count = heads[subset]
-    first = next((j for j in range(k + 1, len(text.lines)) if leading(text.lines[j])), len(text.lines))
+    first = first_numbers(text, k + 1)
     wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2
     columns = table(text, first, count, FULL if wide else PLAIN)
     columns.positive(
@@ -199,9 +191,7 @@ def stiffness_of(p: Table) -> Array:
     """Stiffness (n, 6, 6) about the half-chord line, in axes rotated by the twist."""
     angle = np.radians(p["pitch"])
     if "K11" in p.columns:
-        full = np.zeros((len(angle), 6, 6))
-        full[:, UPPER[0], UPPER[1]] = np.stack([p[name] for name in FULL[-21:]], axis=1)
-        full += np.triu(full, 1).swapaxes(1, 2)
+        full = symmetric(np.stack([p[name] for name in FULL[-21:]], axis=1))
         for k, matrix in enumerate(full):
             if message := fault(matrix):
                 raise CaseError(f"{p.text.at(p.lines[k])}: stiffness: {message}")

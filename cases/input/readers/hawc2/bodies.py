@@ -85,15 +85,6 @@ def commands(htc: Text) -> Body:
     return list(_commands(htc, htc.path, 0, []))
 
 
-def blade_body(htc: Text, commands: Body) -> Body:
-    """The commands of the first main_body with sections and a name that begins with "blade".
-
-    Raises:
-        CaseError: if there is none.
-    """
-    return body_named(htc, commands, "blade")
-
-
 def body_named(htc: Text, commands: Body, beginning: str) -> Body:
     """The commands of the first main_body with sections and a name that begins so.
 
@@ -108,22 +99,30 @@ def body_named(htc: Text, commands: Body, beginning: str) -> Body:
     )
 
 
+def blocks(commands: Body, *kinds: str) -> list[tuple[str, Body]]:
+    """Kind and commands of each ``begin kind … end kind``, for these kinds."""
+    out: list[tuple[str, Body]] = []
+    inside = ""
+    for command in commands:
+        words = tuple(word.lower() for word in command.words[:2])
+        if len(words) == 2 and words[0] == "begin" and words[1] in kinds:
+            inside = words[1]
+            out.append((inside, []))
+        elif words == ("end", inside):
+            inside = ""
+        elif inside:
+            out[-1][1].append(command)
+    return out
+
+
 def main_bodies(commands: Body) -> dict[str, Body]:
     """The commands of each main_body by its name in lower case; those of a copy are the commands of what it copies."""
     out: dict[str, Body] = {}
-    body: Body | None = None
-    for command in commands:
-        low = [w.lower() for w in command.words[:2]]
-        if low == ["begin", "main_body"]:
-            body = []
-        elif low == ["end", "main_body"] and body is not None:
-            values = {c.words[0]: c.words[1].lower() for c in body if len(c.words) > 1}
-            original = out.get(values.get("copy_main_body", ""))
-            if "name" in values:
-                out.setdefault(values["name"], original or body)
-            body = None
-        elif body is not None:
-            body.append(command)
+    for _, body in blocks(commands, "main_body"):
+        values = {c.words[0]: c.words[1].lower() for c in body if len(c.words) > 1}
+        original = out.get(values.get("copy_main_body", ""))
+        if "name" in values:
+            out.setdefault(values["name"], original or body)
     return out
 
 

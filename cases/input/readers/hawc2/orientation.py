@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from .....core.space.spatial import rotation, skew
 from ..source import Mount
 from ..text import number
-from .bodies import Body, Command
+from .bodies import Body, Command, blocks, main_bodies
 
 Array = NDArray[np.float64]
 
@@ -82,7 +82,7 @@ def mounting(commands: Sequence[Command], blade: str) -> Mount | None:
 
     The pitch angle of HAWC2's bearings is a result of a simulation and not included.
     """
-    by_child, ends = relatives(commands), ends_of(commands)
+    by_child, bodies = relatives(commands), main_bodies(commands)
     axes, root, body = np.eye(3), np.zeros(3), blade
     for _ in range(MAX_BODIES):
         block = by_child.get(body)
@@ -92,7 +92,7 @@ def mounting(commands: Sequence[Command], blade: str) -> Mount | None:
             return mounted(root, axes, block.axis)
         turns = by_child.get(block.parent)
         rotor = turns is not None and turns.axis is not None
-        start = ends.get(block.parent) if block.at_end and not rotor else np.zeros(3)
+        start = _end(bodies.get(block.parent, [])) if block.at_end and not rotor else np.zeros(3)
         if start is None:
             return None
         root, axes, body = start + block.axes @ root, block.axes @ axes, block.parent
@@ -113,22 +113,6 @@ def mounted(root: Array, axes: Array, axis: Array) -> Mount | None:
     pitch = np.arctan2(axes[:, 0] @ downwind, axes[:, 1] @ downwind)
     precone, pitch = np.round([precone, pitch], ROUNDED)
     return Mount(hub_radius=radius, precone=float(precone), pitch=float(pitch))
-
-
-def blocks(commands: Sequence[Command], *kinds: str) -> list[tuple[str, Body]]:
-    """Kind and commands of each ``begin kind … end kind``, for these kinds."""
-    out: list[tuple[str, Body]] = []
-    inside = ""
-    for command in commands:
-        words = tuple(word.lower() for word in command.words[:2])
-        if len(words) == 2 and words[0] == "begin" and words[1] in kinds:
-            inside = words[1]
-            out.append((inside, []))
-        elif words == ("end", inside):
-            inside = ""
-        elif inside:
-            out[-1][1].append(command)
-    return out
 
 
 TURNS = ("eulerang", "eulerpar")
@@ -194,20 +178,8 @@ def _vector(command: Command) -> Array | None:
     return np.array(values, float)
 
 
-def ends_of(commands: Sequence[Command]) -> dict[str, Array]:
-    """The last point (3,) m of each body's c2_def by the body's name; bodies that are copies included."""
-    out: dict[str, Array] = {}
-    name = ""
-    for command in commands:
-        words = [word.lower() for word in command.words]
-        if words[:2] == ["begin", "main_body"]:
-            name = ""
-        elif words[0] == "name" and len(words) > 1:
-            name = words[1]
-        elif words[0] == "copy_main_body" and len(words) > 1 and words[1] in out:
-            out[name] = out[words[1]]
-        elif words[0] == "sec" and name:
-            point = [number(word) for word in words[2:5]]
-            if len(point) == 3 and all(v is not None and np.isfinite(v) for v in point):
-                out[name] = np.array(point, float)
-    return out
+def _end(body: Body) -> Array | None:
+    """The last point (3,) m of a body's c2_def."""
+    sections = [c for c in body if c.words[0] == "sec"]
+    point = [number(word) for word in sections[-1].words[2:5]] if sections else []
+    return np.array(point, float) if len(point) == 3 and all(v is not None and np.isfinite(v) for v in point) else None

@@ -139,13 +139,13 @@ def _lacking(htc: Text, body: bodies.Body) -> str:
 
 
 def _fixed(commands: bodies.Body, tower: str) -> bool:
-    names = [c.words[1].lower() for _, b in orientation.blocks(commands, "fix0") for c in b if len(c.words) > 1]
+    names = [c.words[1].lower() for _, b in bodies.blocks(commands, "fix0") for c in b if len(c.words) > 1]
     return tower in names
 
 
 def _joints(commands: bodies.Body) -> list[Joint]:
     out = []
-    for kind, block in orientation.blocks(commands, *JOINTS):
+    for kind, block in bodies.blocks(commands, *JOINTS):
         commands_of = {c.words[0].removeprefix("m").replace("bdy", "body"): c.words[1:] for c in block}
         if not (commands_of.get("body1") and commands_of.get("body2")):
             continue

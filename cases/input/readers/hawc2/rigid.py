@@ -17,6 +17,7 @@ from .....core.blade import TORSION
 from .....core.space import spatial as sp
 from .....core.space.inertia import transformed
 from ...errors import CaseError
+from ..matrices import between
 from ..source import Unused, unused
 from ..text import Text, load, number
 from . import blade, bodies
@@ -135,8 +136,8 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
         s,
         at,
         (half_length * w).ravel(),
-        blade.between(r, stiffness, s),
-        blade.between(r, mass, s),
+        between(r, stiffness, s),
+        between(r, mass, s),
         masses,
         (*bodies.left(body, masses=False), *products),
     )

@@ -104,7 +104,11 @@ def _read(path: Path, split: Parts, mount: Mount) -> TurbineReading:
         *generator_note(turbine),
         *_locked(split),
         *rigid_bodies(turbine, split, lines, body_frames),
-        *(note for note in blade.source.notes if "orientation of the htc's bodies" not in note and not _alone(note)),
+        *(
+            note
+            for note in blade.source.notes
+            if note != blade_reader.ALONE and "orientation of the htc's bodies" not in note
+        ),
     )
     used_lines = {name: lines[name] for name in dict.fromkeys([*names, *fixed_bodies[False], *fixed_bodies[True]])}
     distinct_lines = {id(split.commands[name]): body_line for name, body_line in reversed(used_lines.items())}
@@ -205,7 +209,3 @@ def _gravity(tower: bodies.Body) -> tuple[float, str]:
     if values and values[-1] is not None and np.isfinite(values[-1]):
         return float(values[-1]), f"{values[-1]:g} m/s² (of the tower)"
     return GRAVITY, f"{GRAVITY:g} m/s² (HAWC2's)"
-
-
-def _alone(note: str) -> bool:
-    return note == blade_reader.ALONE

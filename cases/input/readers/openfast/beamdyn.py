@@ -19,9 +19,25 @@ from scipy.interpolate import CubicSpline
 from .....core.blade import Blade, BladeError
 from .....core.blade_checks import follows
 from ...errors import CaseError
-from ..matrices import BEAMDYN, fault, in_axes, mass_fault
+from ..matrices import BEAMDYN, between, fault, in_axes, mass_fault
 from ..source import OPENFAST_AXES, Mount, Reading, Source, Unused, unused
-from ..text import ROUNDING, Table, Text, fractions, integer, keys, leading, load, row, table, tokens, value, word
+from ..text import (
+    ROUNDING,
+    Table,
+    Text,
+    first_numbers,
+    flag,
+    fractions,
+    integer,
+    keys,
+    leading,
+    load,
+    path_named,
+    row,
+    table,
+    tokens,
+    value,
+)
 from . import elastodyn, elastodyn_unused
 from .beamdyn_axis import Axis, line, measured, resolved, roll
 
@@ -106,7 +122,7 @@ def _damping(text: Text) -> tuple[Unused, ...]:
 
 def _actuator(main: Text) -> tuple[Unused, ...]:
     entries = keys(main)
-    if word(main, {"usepitchact": (0, "false"), **entries}, "UsePitchAct").lower().strip(".") not in ("true", "t"):
+    if not flag(main, "UsePitchAct"):
         return ()
     why = "the pitch bearing is treated as clamped"
     return tuple(
@@ -130,7 +146,7 @@ def _main(path: Path, mount: Mount) -> Text | None:
 
 
 def _named(main: Text) -> Path:
-    return main.path.parent / word(main, keys(main), "BldFile").replace("\\", "/")
+    return path_named(main, "BldFile")
 
 
 def _points(main: Text) -> Table:
@@ -138,10 +154,7 @@ def _points(main: Text) -> Table:
     entries = keys(main)
     count = integer(main, entries, "kp_total")
     members = integer(main, entries, "member_total") if "member_total" in entries else 1
-    first = entries["kp_total"][0] + 1 + members
-    while first < len(main.lines) and not leading(main.lines[first]):
-        first += 1
-    points = table(main, first, count, KEY_POINTS)
+    points = table(main, first_numbers(main, entries["kp_total"][0] + 1 + members), count, KEY_POINTS)
     z = points["kp_zr"]
     for name in ("kp_xr", "kp_yr", "kp_zr"):
         if abs(points[name][0]) <= ROUNDING * np.abs(z).max():
@@ -238,7 +251,7 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
             f"length: {mount.length:g} m by the main file or --length, {length:g} m by the key points: "
             "check that both are of the same blade"
         )
-    at = [_between(arc, m, s) for m in (stiffness, mass)]
+    at = [between(arc, m, s) for m in (stiffness, mass)]
     try:
         return Blade(
             name=name,
@@ -253,9 +266,3 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
         )
     except BladeError as error:
         raise CaseError(f"{path}: {error}") from error
-
-
-def _between(stations: Array, values: Array, s: Array) -> Array:
-    k = np.clip(np.searchsorted(stations, s, side="right") - 1, 0, len(stations) - 2)
-    t = ((s - stations[k]) / (stations[k + 1] - stations[k]))[:, None, None]
-    return (1 - t) * values[k] + t * values[k + 1]

@@ -19,17 +19,23 @@ from .....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ...errors import CaseError
 from ..matrices import about
 from ..source import OPENFAST_AXES, Mount, Reading, Source
-from ..text import Text, fractions, integer, keys, leading, load, table, tokens, value, word
-from . import elastodyn_unused, fast7_offsets
+from ..text import Text, fractions, keys, load, path_named, value
+from . import elastodyn_table, elastodyn_unused, fast7_offsets
+from .mode_shapes import BLADE
 
 Array = NDArray[np.float64]
 
 NAME = "ElastoDyn"
-COLUMNS = ("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 NEEDED = ("BlFract", "StrcTwst", "BMassDen", "FlpStff", "EdgStff")
 POSITIVE = ("BMassDen", "FlpStff", "EdgStff", "GJStff", "EAStff")
 USED = (*NEEDED, "GJStff", "EAStff", "FlpIner", "EdgIner")
-MULTIPLIERS = ("AdjBlMs", "AdjFlSt", "AdjEdSt")
+LAYOUT = elastodyn_table.Layout(
+    count="NBlInpSt",
+    multipliers=("AdjBlMs", "AdjFlSt", "AdjEdSt"),
+    columns=("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff"),
+    needed=NEEDED,
+    known=(*USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS),
+)
 MAX_BYTES = 1_000_000
 """Maximum size of a main file, bytes: larger files in the folder of a blade are not searched."""
 
@@ -129,7 +135,7 @@ def blade_file(text: Text) -> Path:
     Raises:
         CaseError: if it is missing.
     """
-    return text.path.parent / word(text, keys(text), "BldFile1", "BldFile").replace("\\", "/")
+    return path_named(text, "BldFile1", "BldFile")
 
 
 def complete(mount: Mount, file_mount: Mount | None) -> Mount:
@@ -139,23 +145,8 @@ def complete(mount: Mount, file_mount: Mount | None) -> Mount:
 
 
 def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) -> Reading:
-    entries = keys(text)
-    count = integer(text, entries, "NBlInpSt")
-    factors = {name: value(text, entries, name) for name in MULTIPLIERS}
-    for name, factor in factors.items():
-        if factor <= 0:
-            raise CaseError(
-                f"{text.at(entries[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
-            )
-    first = max(k for k, _ in (entries[name.lower()] for name in MULTIPLIERS)) + 1
-    heads = [k for k in range(first, len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "blfract"]
-    first = heads[0] + 1 if heads else first
-    columns = _columns(tokens(text.lines[heads[0]])) if heads else COLUMNS
-    missing = [name for name in NEEDED if name not in columns]
-    if missing:
-        raise CaseError(f"{text.at(heads[0])}: no column {missing[0]}: the table needs {', '.join(NEEDED)}; add it")
-    start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
-    sections = table(text, start, count, columns)
+    sections, factors = elastodyn_table.read(text, LAYOUT)
+    count, columns = len(sections.lines), tuple(sections.columns)
     sections.positive(*[name for name in POSITIVE if name in columns])
     eta = fractions(sections, "BlFract")
     mounted = complete(mount, hub_data.mount if hub_data else None)
@@ -196,7 +187,7 @@ def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) ->
     axes = f"{OPENFAST_AXES}; {'the axis is the elastic axis' if used_offsets else 'all centres on the pitch axis'}"
     unused_values = (
         *elastodyn_unused.of_table(sections, USED, offsets),
-        *elastodyn_unused.of_blade(text),
+        *elastodyn_unused.of_shapes(text, BLADE),
         *(elastodyn_unused.of_main(load(main)) if main else ()),
     )
     files = (text.path,) if main is None else (text.path, main)
@@ -208,11 +199,6 @@ def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) ->
             "them out, as FAST itself does",
         )
     return Reading(blade, Source(NAME, files, axes, notes, unused_values), unstated=mounted.unstated)
-
-
-def _columns(names: list[str]) -> tuple[str, ...]:
-    by_lower_case = {n.lower(): n for n in (*COLUMNS, *USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS)}
-    return tuple(by_lower_case.get(name.lower(), name) for name in names)
 
 
 def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns: tuple[str, ...]) -> tuple[str, ...]:

@@ -12,7 +12,7 @@ from .....core.space.inertia import transformed
 from .....core.turbine.turbine import Teeter
 from ...errors import CaseError
 from ..source import Unused
-from ..text import Text, keys, number, value
+from ..text import Text, flag, number_or, value
 from .elastodyn_unused import TEETER
 
 Entries = dict[str, tuple[int, str]]
@@ -50,7 +50,7 @@ def teeter(main: Text, entries: Entries) -> tuple[Teeter | None, float, tuple[st
     The apex is upwind of the hinge by UndSling, and OverHang reaches to the hinge. A soft stop at 0 is a spring.
     """
     undersling = number_or(main, "UndSling", 0.0)
-    if not flag(main, entries, "TeetDOF"):
+    if not flag(main, "TeetDOF"):
         return None, undersling, ("the hub does not teeter (TeetDOF is False)",)
     if number_or(main, "Delta3", 0.0):
         raise CaseError(
@@ -74,16 +74,3 @@ def body(mass: float, moments: np.ndarray, centre: np.ndarray) -> np.ndarray:
     """(6, 6) inertia of a body with these moments about its mass centre (3,), kg m²."""
     out = np.diag([mass] * 3 + moments.tolist())
     return np.ascontiguousarray(transformed(out, sp.pose(np.eye(3), centre)))
-
-
-def number_or(text: Text, name: str, otherwise: float) -> float:
-    """The finite number under a name, or another one."""
-    line = keys(text).get(name.lower())
-    out = number(line[1]) if line else None
-    return out if out is not None and np.isfinite(out) else otherwise
-
-
-def flag(text: Text, entries: Entries, name: str) -> bool:
-    """Whether the value under a name is true; False if it is missing."""
-    line = entries.get(name.lower())
-    return line is not None and line[1].lower().strip(".") in ("true", "t")

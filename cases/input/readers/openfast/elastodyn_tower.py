@@ -11,15 +11,16 @@ import numpy as np
 
 from .....core.blade import Blade, BladeError, section_mass, section_stiffness
 from ...errors import CaseError
-from ..source import Mount, Reading, Source, Unused, unused
-from ..text import Text, fractions, integer, keys, leading, load, number, table, tokens, value, word
-from . import elastodyn
+from ..source import Mount, Reading, Source
+from ..text import Text, fractions, keys, load, path_named, value
+from . import elastodyn, elastodyn_table, elastodyn_unused
+from .mode_shapes import TOWER
 
 NAME = "ElastoDyn tower"
 AXES = "x up, z downwind, y = z × x"
 COLUMNS = ("HtFract", "TMassDen", "TwFAStif", "TwSSStif")
 OFFSETS = ("TwFAIner", "TwSSIner", "TwrSFAcgOf", "TwFAcgOf", "TwSScgOf", "TwGJStif", "TwEAStif")
-MULTIPLIERS = ("AdjTwMa", "AdjFASt", "AdjSSSt")
+LAYOUT = elastodyn_table.Layout("NTwInpSt", ("AdjTwMa", "AdjFASt", "AdjSSSt"), COLUMNS, COLUMNS, (*COLUMNS, *OFFSETS))
 
 
 def is_tower(text: Text) -> bool:
@@ -50,7 +51,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     motions = "flapwise is fore-aft, edgewise is side-to-side"
     scope = "the tower alone: nacelle and rotor, and their weight, are included by `southwell campbell TURBINE.fst`"
     files = (path,) if main is None else (path, main)
-    return Reading(tower, Source(NAME, files, AXES, (motions, *notes, scope), of_tower(text)), speed=0.0)
+    source = Source(NAME, files, AXES, (motions, *notes, scope), elastodyn_unused.of_shapes(text, TOWER))
+    return Reading(tower, source, speed=0.0)
 
 
 def tower_file(main: Text) -> Path:
@@ -59,7 +61,7 @@ def tower_file(main: Text) -> Path:
     Raises:
         CaseError: if it is missing.
     """
-    return main.path.parent / word(main, keys(main), "TwrFile").replace("\\", "/")
+    return path_named(main, "TwrFile")
 
 
 def tower_height(main: Text) -> float:
@@ -84,61 +86,23 @@ def beam(text: Text, height: float) -> tuple[Blade, tuple[str, ...]]:
     Raises:
         CaseError: naming the file and line at fault.
     """
-    entries = keys(text)
-    count = integer(text, entries, "NTwInpSt")
-    factors = [value(text, entries, name) for name in MULTIPLIERS]
-    for name, factor in zip(MULTIPLIERS, factors, strict=True):
-        if factor <= 0:
-            raise CaseError(
-                f"{text.at(entries[name.lower()][0])}: {name}: {factor:g}: a factor must be positive: correct it"
-            )
-    heads = [k for k in range(len(text.lines)) if (tokens(text.lines[k]) or [""])[0].lower() == "htfract"]
-    first = heads[0] + 1 if heads else max(entries[name.lower()][0] for name in MULTIPLIERS) + 1
-    start = next((k for k in range(first, len(text.lines)) if leading(text.lines[k])), len(text.lines))
-    names = tokens(text.lines[heads[0]]) if heads else list(COLUMNS)
-    by_lower_case = {name.lower(): name for name in (*COLUMNS, *OFFSETS)}
-    sections = table(text, start, count, tuple(by_lower_case.get(name.lower(), name) for name in names))
-    missing = [name for name in COLUMNS if name not in sections.columns]
-    if missing:
-        raise CaseError(f"{text.at(heads[0])}: no column {missing[0]}: the table needs {', '.join(COLUMNS)}; add it")
+    sections, factors = elastodyn_table.read(text, LAYOUT)
     sections.positive(*COLUMNS[1:])
+    mass, fore_aft, side_side = factors.values()
     try:
         tower = Blade(
             name=text.path.stem,
             stations=fractions(sections, "HtFract") * height,
             stiffness=section_stiffness(
-                np.inf, np.inf, factors[1] * sections["TwFAStif"], factors[2] * sections["TwSSStif"]
+                np.inf, np.inf, fore_aft * sections["TwFAStif"], side_side * sections["TwSSStif"]
             ),
-            mass=section_mass(factors[0] * sections["TMassDen"]),
-            twist=np.zeros(count),
+            mass=section_mass(mass * sections["TMassDen"]),
+            twist=np.zeros(len(sections.lines)),
         )
     except BladeError as error:
         raise CaseError(f"{text.path}: {error}") from error
-    factors_text = ", ".join(f"{name} = {factor:g}" for name, factor in zip(MULTIPLIERS, factors, strict=True))
+    factors_text = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
     rigid = (
         "axial, torsional and shear stiffness and moments of inertia of the tower's sections: not used by this format"
     )
     return tower, (f"{factors_text}: multiply the table", rigid)
-
-
-def of_tower(text: Text) -> tuple[Unused, ...]:
-    """Non-zero quantities of a tower file that are not used."""
-    entries = keys(text)
-    out: list[Unused] = []
-    groups = (
-        (
-            "TwrFADmp(1), TwrFADmp(2), TwrSSDmp(1), TwrSSDmp(2)",
-            ("twrfadmp1", "twrfadmp2", "twrssdmp1", "twrssdmp2"),
-            "%",
-        ),
-    )
-    for name, keyed, unit in groups:
-        values = [number(entries[k][1]) or 0.0 for k in keyed if k in entries]
-        out += unused(name, values, unit, text.path, "modes are undamped")
-    shapes = [k for k in entries if k.startswith(("twfam", "twssm"))]
-    values = [number(entries[k][1]) or 0.0 for k in shapes]
-    out += unused("TwFAM1Sh … TwSSM2Sh", values, "", text.path, "ElastoDyn's own mode shapes; they are computed")
-    tuned = [number(entries[k][1]) or 0.0 for k in entries if k.startswith(("fasttunr", "ssstunr", "fastunr"))]
-    if {*tuned} - {1.0}:
-        out += unused("FAStTunr, SSStTunr", tuned, "", text.path, "they scale ElastoDyn's modal stiffness")
-    return tuple(out)

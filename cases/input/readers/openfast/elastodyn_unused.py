@@ -1,13 +1,21 @@
 """Quantities in ElastoDyn's files that modes do not use: damping, shapes, aerodynamics, teeter, initial state."""
 
 import math
+from collections.abc import Iterable
 
 from ..source import Unused, unused
-from ..text import Table, Text, keys, number
+from ..text import Table, Text, flag, keys, number
 from .fast7_offsets import COLUMNS as OFFSETS
+from .mode_shapes import BLADE, Names
 
-DAMPING = "BldFlDmp(1), BldFlDmp(2), BldEdDmp(1)"
-SHAPES = tuple(f"{name}{power}" for name in ("BldFl1Sh", "BldFl2Sh", "BldEdgSh") for power in range(2, 7))
+
+def _listed(names: Iterable[str]) -> str:
+    """Names with their numbers in brackets, as in the files: ``BldFlDmp(1), BldFlDmp(2)``."""
+    return ", ".join(f"{name[:-1]}({name[-1]})" for name in names)
+
+
+DAMPING = _listed(names.damping for names in BLADE.values())
+"""Name of the damping ratios of a blade file."""
 
 AERODYNAMIC = "aerodynamics only"
 COLUMNS = {
@@ -46,17 +54,20 @@ def of_table(sections: Table, used_columns: tuple[str, ...], offsets: bool) -> t
     return tuple(out)
 
 
-def of_blade(text: Text) -> tuple[Unused, ...]:
-    """Unused non-zero values of a blade file outside its table."""
-    dampings, tuned = ("BldFlDmp1", "BldFlDmp2", "BldEdDmp1"), ("FlStTunr1", "FlStTunr2")
-    damping, shapes, tuners = (_values(text, names) for names in (dampings, SHAPES, tuned))
+def of_shapes(text: Text, motions: dict[str, Names]) -> tuple[Unused, ...]:
+    """Unused non-zero values of a blade or tower file outside its table: what belongs to the assumed shapes."""
+    dampings = [names.damping for names in motions.values()]
+    coefficients = [name for names in motions.values() for name in names.coefficients]
+    tuned = [names.tuner for names in motions.values() if names.tuner]
+    tuners = _values(text, tuned)
     scaled = "they scale ElastoDyn's modal stiffness, which sections do not have"
+    computed = "ElastoDyn's own mode shapes; they are computed"
     return (
-        *unused(DAMPING, damping, "% of critical", text.path, "modes are undamped"),
+        *unused(_listed(dampings), _values(text, dampings), "% of critical", text.path, "modes are undamped"),
         *unused(
-            "BldFl1Sh, BldFl2Sh, BldEdgSh", shapes, "", text.path, "ElastoDyn's own mode shapes; they are computed"
+            ", ".join(names.shape for names in motions.values()), _values(text, coefficients), "", text.path, computed
         ),
-        *(unused("FlStTunr(1), FlStTunr(2)", tuners, "", text.path, scaled) if {*tuners} != {1.0} else ()),
+        *(unused(_listed(tuned), tuners, "", text.path, scaled) if {*tuners} != {1.0} else ()),
     )
 
 
@@ -76,7 +87,7 @@ def of_main(text: Text) -> tuple[Unused, ...]:
             out += unused(
                 f"{name}(2), …", values[1:], unit, text.path, "only the first blade is read; the others differ"
             )
-    if _flag(text, "TeetDOF") and 2.0 in _values(text, ("NumBl",)):
+    if flag(text, "TeetDOF") and 2.0 in _values(text, ("NumBl",)):
         out += unused("TeetDOF", (1.0,), "", text.path, CLAMPED)
         for name, unit in TEETER.items():
             out += unused(name, _values(text, (name,)), unit, text.path, "the teeter hinge is treated as clamped")
@@ -89,13 +100,8 @@ def _each(text: Text, name: str) -> tuple[float, ...]:
     return _values(text, (*(f"{name}{k}" for k in (1, 2, 3) if k <= count), name))
 
 
-def _values(text: Text, names: tuple[str, ...]) -> tuple[float, ...]:
+def _values(text: Text, names: Iterable[str]) -> tuple[float, ...]:
     """The finite numbers of the names that are present."""
     entries = keys(text)
     numbers = (number(entries[name.lower()][1]) for name in names if name.lower() in entries)
     return tuple(value for value in numbers if value is not None and math.isfinite(value))
-
-
-def _flag(text: Text, name: str) -> bool:
-    line = keys(text).get(name.lower())
-    return line is not None and line[1].lower().strip(".") in ("true", "t")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ...errors import CaseError
 from ..source import Mount, Reading
-from ..text import Text, integer, keys, load, word
+from ..text import Text, integer, keys, load, path_named
 from . import beamdyn, elastodyn
 
 
@@ -55,9 +55,9 @@ def file_named(text: Text, name: str) -> Path:
     Raises:
         CaseError: if it is missing, or no file is there.
     """
-    entries = keys(text)
-    path = text.path.parent / word(text, entries, name, name.rstrip("1")).replace("\\", "/")
+    path = path_named(text, name, name.rstrip("1"))
     if not os.path.isfile(path):  # also False for an invalid name
+        entries = keys(text)
         line = entries[name.lower() if name.lower() in entries else name.rstrip("1").lower()][0]
         raise CaseError(f"{text.at(line)}: {name}: {path}: no such file: correct the name, or put the file there")
     return path

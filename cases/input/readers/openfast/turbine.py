@@ -14,11 +14,12 @@ import numpy as np
 from .....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from ...errors import CaseError
 from ..source import Mount, Source, TurbineReading, Unused, unused
-from ..text import Text, integer, keys, load, value
+from ..text import Text, flag, integer, keys, load, number_or, value
 from . import elastodyn_hub as hubs
 from . import elastodyn_tower as tower_reader
-from . import fst
-from .elastodyn_hub import body, flag, number_or
+from . import elastodyn_unused, fst
+from .elastodyn_hub import body
+from .mode_shapes import TOWER
 
 NAME = "OpenFAST turbine"
 AXES = "nacelle: x downwind, y to port, z up; here x = its z, y = its −y, z = its x"
@@ -72,8 +73,8 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     hinge, undersling, hinge_note = hubs.teeter(main, entries) if blades == 2 else (None, 0.0, ())
     tower, tower_notes = tower_reader.beam(tower_text, tower_reader.tower_height(main))
     yaw, yaw_note, servo = _yaw(primary, main, entries)
-    stiffness = value(main, entries, "DTTorSpr") if flag(main, entries, "DrTrDOF") else np.inf
-    free = flag(main, entries, "GenDOF")
+    stiffness = value(main, entries, "DTTorSpr") if flag(main, "DrTrDOF") else np.inf
+    free = flag(main, "GenDOF")
     drivetrain = Drivetrain(stiffness, value(main, entries, "GenIner"), value(main, entries, "GBRatio"), free)
     gravity = number_or(primary, "Gravity", number_or(main, "Gravity", 9.80665))
     turbine = Turbine(
@@ -108,7 +109,7 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
         *_below(primary),
         *_unused(main, entries),
         *_yaw_damping(servo),
-        *tower_reader.of_tower(tower_text),
+        *elastodyn_unused.of_shapes(tower_text, TOWER),
         *hubs.without_hinge(blade.source.unused, hinge),
     )
     files = (*blade.source.files, tower_text.path, *servo)
@@ -134,7 +135,7 @@ def _nacelle(main: Text, entries: Entries) -> np.ndarray:
 
 def _yaw(primary: Text, main: Text, entries: Entries) -> tuple[float, str, tuple[Path, ...]]:
     """Stiffness of the yaw bearing, N m/rad, a note on it, and the file that states it."""
-    if not flag(main, entries, "YawDOF"):
+    if not flag(main, "YawDOF"):
         return np.inf, "yaw bearing locked (YawDOF is False)", ()
     servo = keys(primary).get("servofile")
     path = primary.path.parent / servo[1].replace("\\", "/") if servo else None
@@ -164,12 +165,12 @@ def _unused(main: Text, entries: Entries) -> tuple[Unused, ...]:
     out: list[Unused] = []
     for name, unit in DAMPING.items():
         out += unused(name, [number_or(main, name, 0.0)], unit, main.path, UNDAMPED)
-    free = [name for name in PLATFORM if flag(main, entries, name)]
+    free = [name for name in PLATFORM if flag(main, name)]
     if free:
         out += unused(", ".join(free), [1.0] * len(free), "", main.path, FLOATER)
         for name, unit in INERTIA.items():
             out += unused(name, [number_or(main, name, 0.0)], unit, main.path, FLOATER)
     out += unused("NacYaw", [number_or(main, "NacYaw", 0.0)], "deg", main.path, "the nacelle faces the wind")
-    if flag(main, entries, "Furling"):
+    if flag(main, "Furling"):
         out += unused("Furling", [1.0], "", main.path, "furling is not included")
     return tuple(out)

@@ -32,8 +32,16 @@ def test_a_tower_file_is_a_beam_that_stands(tmp_path: Path) -> None:
     assert tower.stiffness[0, 5, 5] == pytest.approx(8e9)
     assert [str(u).split(":")[1].split("(")[0].strip() for u in reading.source.unused] == [
         "TwrFADmp",
-        "TwFAM1Sh … TwSSM2Sh",
+        "TwFAM1Sh, TwFAM2Sh, TwSSM1Sh, TwSSM2Sh",
     ]
+
+
+def test_tuners_of_a_towers_shapes_are_listed(tmp_path: Path) -> None:
+    deck(tmp_path)
+    with (tmp_path / "tower.dat").open("a") as file:
+        file.write("1.0 FAStTunr(1)\n1.5 SSStTunr(1)\n")
+    (tuners,) = (u for u in readers.reading(tmp_path / "tower.dat").source.unused if "Tunr" in u.name)
+    assert tuners.values == (1.0, 1.5)
 
 
 def test_a_tower_without_height_or_with_a_wrong_value_is_refused(tmp_path: Path) -> None:
