@@ -13,18 +13,18 @@ class Finding:
     Attributes:
         name: kind of the finding, as ``frame flag``.
         level: ``DEFECT``, ``LIMIT`` or ``NOTE``.
-        where: name of the set.
         observation: what was measured, with the number.
         remedy: what to do.
         value: the number.
+        where: name of the set or the table; the judgement adds it.
     """
 
     name: str
     level: str
-    where: str
     observation: str
     remedy: str
     value: float
+    where: str = ""
 
     def __str__(self) -> str:
         return f"{self.name}: {self.observation}: {self.remedy}"

@@ -1,7 +1,7 @@
 """The result of judging linearisations, as data."""
 
 from collections.abc import Iterable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from .findings import DEFECT, LIMIT, Finding
 from .mode_tables import ModeTable
@@ -64,6 +64,11 @@ class Judgement:
         """``NO`` with a defect, ``OPEN`` if the evidence is limited, else ``YES``."""
         levels = {finding.level for finding in self.findings}
         return NO if DEFECT in levels else OPEN if LIMIT in levels else YES
+
+
+def located(findings: Iterable[Finding], where: str) -> tuple[Finding, ...]:
+    """Findings with the name of their set or table."""
+    return tuple(replace(finding, where=where) for finding in findings)
 
 
 def by_level(findings: Iterable[Finding]) -> tuple[Finding, ...]:

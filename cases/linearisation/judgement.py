@@ -12,7 +12,7 @@ from . import floquet, hawcstab2, mode_tables, tracking
 from .checks import azimuths, blades, disagreement, structure, tables
 from .checks.frames import in_rotating_frame
 from .findings import DEFECT, Finding
-from .judged import AVERAGED, FLOQUET, JudgedSet, Judgement, by_level
+from .judged import AVERAGED, FLOQUET, JudgedSet, Judgement, by_level, located
 from .lin_file import read
 from .mode_tables import ModeTable
 from .modes import Mode, Spectrum, spectrum
@@ -52,8 +52,9 @@ def judge(paths: Sequence[Path]) -> Judgement:
     sets = tuple(judge_set(judged_set) for judged_set in collect([read(path) for path in linearisations]))
     tracked = tracking.track(sets)
     findings = [finding for judged_set in sets for finding in judged_set.findings]
-    findings += [finding for table in listed for finding in mode_tables.findings(table)]
-    findings += [*tracking.drift(sets), *tracking.lines(sets, tracked)]
+    for table in listed:
+        findings += located(mode_tables.findings(table), table.name)
+    findings += located((*tracking.drift(sets), *tracking.lines(sets, tracked)), "all operating points")
     return Judgement(sets, tracked, listed, by_level(findings))
 
 
@@ -97,7 +98,7 @@ def judge_set(azimuth_set: AzimuthSet) -> JudgedSet:
     modes, method = (averaged.modes, AVERAGED) if broken else _periodic(azimuth_set, averaged)
     if not any(finding.level == DEFECT for finding in findings):
         findings += structure.damping(azimuth_set, modes)
-    return JudgedSet(azimuth_set, modes, method, tuple(_once(by_level(findings))))
+    return JudgedSet(azimuth_set, modes, method, located(_once(by_level(findings)), azimuth_set.name))
 
 
 def _once(findings: Sequence[Finding]) -> Iterator[Finding]:

@@ -13,7 +13,7 @@ from ..input import files
 from ..input.errors import CaseError
 from ..input.readers.text import number
 from .findings import DEFECT, LIMIT, Finding, count, listed
-from .orders import TrackedFrequency, order_lines
+from .orders import order_lines
 
 Array = NDArray[np.float64]
 
@@ -100,23 +100,17 @@ def findings(table: ModeTable) -> Iterator[Finding]:
         yield Finding(
             "negative frequency",
             DEFECT,
-            table.name,
             f"{count(len(negative), 'mode')} with negative frequencies ({listed(negative)})",
             "give the eigenvalue with a positive imaginary part of each pair",
             float(len(negative)),
         )
     if table.unit == "Hz":
-        zeros = np.zeros(len(table.points))
-        yield from order_lines(
-            [TrackedFrequency(n, table.points, f, zeros) for n, f in zip(table.names, table.frequencies, strict=True)],
-            table.name,
-        )
+        yield from order_lines(table.names, table.points, table.frequencies)
     grow = [name for name, d in zip(table.names, table.damping, strict=True) if (d < 0).any()]
     if grow:
         yield Finding(
             "negative damping",
             LIMIT,
-            table.name,
             f"{count(len(grow), 'mode')} with negative damping ({listed(grow)}; least {100 * np.nanmin(table.damping):.2g} %)",
             "an instability of the turbine, or of the linearisation: give its .lin files to find the cause",
             float(np.nanmin(table.damping)),
@@ -124,7 +118,6 @@ def findings(table: ModeTable) -> Iterator[Finding]:
     yield Finding(
         "modes only",
         LIMIT,
-        table.name,
         "a table of modes does not show the equations it comes from",
         "give the linearisations themselves to have them judged",
         float(len(table.names)),

@@ -1,7 +1,6 @@
 """Multiples of the rotor speed that a table lists as modes."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
@@ -17,39 +16,27 @@ MIN_RANGE = 1.1
 """Ratio of the largest and smallest rotor speed over which proportionality is visible."""
 
 
-@dataclass(frozen=True)
-class TrackedFrequency:
-    """Frequencies of one row of a Campbell table.
+def order_lines(names: Sequence[str], speeds: Array, frequencies: Array) -> tuple[Finding, ...]:
+    """Rows of a Campbell table whose frequencies are one multiple of the rotor speed at three or more operating points.
 
-    Attributes:
-        name: of the row.
-        speeds: rotor speeds, Hz.
-        frequencies: Hz; NaN where the row has none.
-        uncertainty: relative to the frequencies.
+    Args:
+        names: of the rows.
+        speeds: (k,) rotor speeds, Hz.
+        frequencies: (m, k) Hz; NaN where a row has none.
     """
-
-    name: str
-    speeds: Array
-    frequencies: Array
-    uncertainty: Array
-
-
-def order_lines(lines: Sequence[TrackedFrequency], where: str) -> tuple[Finding, ...]:
-    """Rows whose frequencies are one multiple of the rotor speed at three or more operating points."""
     out = []
-    for line in lines:
-        valid = np.isfinite(line.frequencies) & (line.speeds > 0)
-        if np.count_nonzero(valid) < 3 or np.ptp(np.log(line.speeds[valid])) < np.log(MIN_RANGE):
+    for name, frequency in zip(names, frequencies, strict=True):
+        valid = np.isfinite(frequency) & (speeds > 0)
+        if np.count_nonzero(valid) < 3 or np.ptp(np.log(speeds[valid])) < np.log(MIN_RANGE):
             continue
-        ratio = line.frequencies[valid] / line.speeds[valid]
+        ratio = frequency[valid] / speeds[valid]
         order = int(np.round(np.median(ratio)))
         if order >= 1 and np.abs(ratio / order - 1).max() < TOLERANCE:
             out.append(
                 Finding(
                     "order line",
                     DEFECT,
-                    where,
-                    f"{line.name} is {order} times the rotor speed at {np.count_nonzero(valid)} operating points",
+                    f"{name} is {order} times the rotor speed at {np.count_nonzero(valid)} operating points",
                     f"it is the {order}P excitation and no mode: remove it",
                     float(order),
                 )

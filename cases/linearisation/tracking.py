@@ -8,7 +8,7 @@ from scipy.optimize import linear_sum_assignment
 from .findings import LIMIT, Finding
 from .judged import JudgedSet, TrackedMode
 from .modes import Mode
-from .orders import TrackedFrequency, order_lines
+from .orders import order_lines
 
 MIN_OVERLAP = 0.3
 """Overlap |l r| of left and right eigenvectors of two operating points below which a mode is not continued."""
@@ -62,18 +62,8 @@ def _label(row: Sequence[Mode | None]) -> str:
 def lines(sets: Sequence[JudgedSet], tracked: Sequence[TrackedMode]) -> tuple[Finding, ...]:
     """Multiples of the rotor speed among the tracked modes."""
     speeds = np.array([judged_set.azimuth_set.omega for judged_set in sets]) / (2 * np.pi)
-    return order_lines(
-        [
-            TrackedFrequency(
-                mode.name,
-                speeds,
-                np.array([np.nan if m is None else m.frequency for m in mode.at]),
-                np.array([np.nan if m is None else m.relative_uncertainty for m in mode.at]),
-            )
-            for mode in tracked
-        ],
-        "all operating points",
-    )
+    frequencies = np.array([[np.nan if m is None else m.frequency for m in mode.at] for mode in tracked])
+    return order_lines([mode.name for mode in tracked], speeds, frequencies)
 
 
 def drift(sets: Sequence[JudgedSet]) -> tuple[Finding, ...]:
@@ -86,7 +76,6 @@ def drift(sets: Sequence[JudgedSet]) -> tuple[Finding, ...]:
         Finding(
             "version drift",
             LIMIT,
-            "all operating points",
             f"operating points were written by {len(versions)} versions ({', '.join(versions[:3])})",
             "linearise all operating points with one version",
             float(len(versions)),

@@ -46,7 +46,6 @@ def coverage(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "one azimuth",
             LIMIT,
-            azimuth_set.name,
             "one azimuth does not show whether the equations depend on the azimuth",
             "linearise at 12 or more azimuths of a revolution (NLinTimes)",
             1.0,
@@ -57,7 +56,6 @@ def coverage(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "repeated azimuths",
             DEFECT,
-            azimuth_set.name,
             f"two files have the azimuth {np.degrees(psi[gaps.argmin()]):.2f}°",
             "give each azimuth once",
             float(np.degrees(gaps.min())),
@@ -66,7 +64,6 @@ def coverage(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "missing azimuths",
             DEFECT,
-            azimuth_set.name,
             f"{n} azimuths leave a gap of {np.degrees(gaps.max()):.0f}° (even spacing: {360 / n:.0f}°)",
             "linearise at azimuths that cover the revolution evenly, or give the missing files",
             float(np.degrees(gaps.max())),
@@ -75,7 +72,6 @@ def coverage(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "few azimuths",
             LIMIT,
-            azimuth_set.name,
             f"{n} azimuths show {phase_count} phase{'s' if phase_count > 1 else ''} of blade passing",
             "variation with three times the rotor speed is invisible: linearise at 12 or more azimuths",
             float(phase_count),
@@ -102,7 +98,6 @@ def steadiness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "blades exchanged",
             DEFECT,
-            azimuth_set.name,
             f"deflections of the blades deviate by {100 * aperiodic:.2g} % from a periodic motion, with blades 2 and 3 "
             f"exchanged by {100 * exchanged:.2g} %",
             EXCHANGE,
@@ -116,7 +111,6 @@ def steadiness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "unsteady operating point",
             DEFECT,
-            azimuth_set.name,
             text,
             "linearise after the transients have decayed (CalcSteady, or a later LinTimes)",
             value,
@@ -129,16 +123,15 @@ def steadiness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
                 yield Finding(
                     "azimuth contradicts generator",
                     DEFECT,
-                    azimuth_set.name,
                     f"azimuths of header and generator differ by {np.degrees(error):.1f}°",
                     "the header is not of this linearisation: linearise again",
                     error,
                 )
 
 
-def periodic_fit(psi: Array, values: Array, highest: int = 2) -> tuple[Array, int]:
+def _periodic_fit(psi: Array, values: Array) -> tuple[Array, int]:
     """Residuals of a fit by harmonics of the azimuth, and the number of harmonics that the azimuths determine."""
-    for harmonics in range(highest, -1, -1):
+    for harmonics in (2, 1, 0):
         h = np.arange(1, harmonics + 1)
         basis = np.column_stack([np.ones(len(psi)), np.cos(np.outer(psi, h)), np.sin(np.outer(psi, h))])
         if len(psi) >= basis.shape[1] + 2 and np.linalg.cond(basis) < 30:
@@ -156,7 +149,7 @@ def _aperiodic(azimuth_set: AzimuthSet, order: tuple[int, ...]) -> float:
         if group.rate or azimuth_set.states[group.members[0]].module != "ED":
             continue
         values = azimuth_set.values[:, [group.members[k] for k in order]].ravel()
-        residual, harmonics = periodic_fit(psi, values)
+        residual, harmonics = _periodic_fit(psi, values)
         size = float(np.abs(values).max())
         if np.isfinite(values).all() and harmonics and size > 1e-6:
             worst = max(worst, float(np.abs(residual).max()) / size)

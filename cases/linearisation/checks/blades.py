@@ -120,7 +120,6 @@ def equality(differences: tuple[Difference, ...], azimuth_set: AzimuthSet) -> It
         yield Finding(
             "pitch reversed",
             DEFECT,
-            azimuth_set.name,
             f"blade {d.blade}: the coupling of {d.row} and {d.column} has the opposite sign (ratio {d.ratio:.2f}), its "
             "stiffnesses are equal",
             "its pitch or twist turns the other way: check the pitch axis and the initial pitch of the blades",
@@ -132,7 +131,6 @@ def equality(differences: tuple[Difference, ...], azimuth_set: AzimuthSet) -> It
         yield Finding(
             "unequal blades",
             DEFECT,
-            azimuth_set.name,
             f"blade {d.blade} is stiffer than the others by {entries}"
             if d.ratio > 1
             else f"blade {d.blade} is softer than the others by {entries}",
@@ -144,7 +142,6 @@ def equality(differences: tuple[Difference, ...], azimuth_set: AzimuthSet) -> It
         yield Finding(
             "unequal blades",
             DEFECT,
-            azimuth_set.name,
             f"blade {d.blade}: the coupling of {d.row} and {d.column} is {d.ratio:.2f} times that of the others",
             "check the blade files; multi-blade coordinates assume equal blades",
             d.ratio,

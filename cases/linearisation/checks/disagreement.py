@@ -69,7 +69,6 @@ def agreement(azimuth_set: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator
         yield Finding(
             "blades exchanged",
             DEFECT,
-            azimuth_set.name,
             f"azimuths differ in the fixed frame, with blades 2 and 3 exchanged {size / max(exchanged, 1e-300):.0f} times less",
             EXCHANGE,
             size / max(exchanged, 1e-300),
@@ -81,7 +80,6 @@ def agreement(azimuth_set: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator
         yield Finding(
             "version drift",
             DEFECT,
-            azimuth_set.name,
             f"in {len(names)} of {len(azimuth_set.files)} files (first: {names[0]}) the equation of {label} is {ratio:.3f} "
             "times that of the others, and the other equations follow: its inertia differs",
             "linearise all azimuths with one model and one version",
@@ -93,7 +91,6 @@ def agreement(azimuth_set: AzimuthSet, A: Array, spectrum: Spectrum) -> Iterator
     yield Finding(
         "azimuths disagree",
         DEFECT if effect.max() > LARGE_EFFECT else LIMIT,
-        azimuth_set.name,
         f"{azimuth_set.files[k].path.name} changes an eigenvalue by {100 * effect.max():.2g} %, most in the equation of "
         f"{azimuth_set.states[row].label} by {azimuth_set.states[column].label}",
         "linearise this azimuth again, at a steady operating point",

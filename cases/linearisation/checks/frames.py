@@ -28,7 +28,6 @@ def in_rotating_frame(azimuth_set: AzimuthSet) -> tuple[Array, tuple[Finding, ..
         Finding(
             "frame flag",
             DEFECT,
-            azimuth_set.name,
             f"{len(flagged)} states of BeamDyn are flagged as rotating, but their equations have {100 * abs(content):.1f} % of "
             f"the Coriolis terms of a rotating frame{effect}",
             "their frame is frozen at this instant (OpenFAST issue 3394); the modes listed are those after transformation to "

@@ -46,7 +46,6 @@ def columns(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "zero column",
             DEFECT,
-            azimuth_set.name,
             f"{count(len(ineffective), 'displacement')} of structures without effect on any equation ({listed(ineffective)})",
             "their columns of A are zero although a spring must hold them: report it to the authors of the program",
             float(len(ineffective)),
@@ -55,7 +54,6 @@ def columns(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "generator locked",
             DEFECT,
-            azimuth_set.name,
             "the generator is listed as a degree of freedom, but its acceleration row is zero",
             "linearise with GenDOF as the turbine operates: a locked generator raises the drivetrain's and edgewise modes",
             0.0,
@@ -64,7 +62,6 @@ def columns(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "zero row",
             DEFECT,
-            azimuth_set.name,
             f"{count(len(others_stuck), 'motion')} without acceleration ({listed(others_stuck)})",
             "their rows of A are zero: report it to the authors of the program",
             float(len(others_stuck)),
@@ -73,7 +70,6 @@ def columns(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "idle states",
             NOTE,
-            azimuth_set.name,
             f"{count(idle, 'state')} of first order without effect on any other state",
             "harmless; they add eigenvalues that move nothing",
             float(idle),
@@ -90,7 +86,6 @@ def generator(azimuth_set: AzimuthSet, spectrum: Spectrum) -> Iterator[Finding]:
             yield Finding(
                 "generator locked",
                 DEFECT,
-                azimuth_set.name,
                 f"the generator is listed as free, but a spring of ({np.sqrt(stiffness) / (2 * np.pi):.3g} Hz)² holds it",
                 "linearise with a free generator, or without its degree of freedom",
                 stiffness,
@@ -100,7 +95,6 @@ def generator(azimuth_set: AzimuthSet, spectrum: Spectrum) -> Iterator[Finding]:
             yield Finding(
                 "generator not at zero",
                 NOTE,
-                azimuth_set.name,
                 f"the rotor's free rotation grows with {drift:.2g} rad/s in place of 0",
                 "forces that depend on the azimuth, or rounding, act on the free rotor; slow modes are less certain",
                 drift,
@@ -136,7 +130,6 @@ def units(azimuth_set: AzimuthSet, spectrum: Spectrum) -> Iterator[Finding]:
             yield Finding(
                 "units of the tower",
                 DEFECT,
-                azimuth_set.name,
                 f"the couplings of {tower} and {blade} imply a ratio of masses of {ratio:.1g}: the tower's states are "
                 f"{'larger' if factor > 1 else 'smaller'} by {max(factor, 1 / factor):g}",
                 f"their unit is not {azimuth_set.states[t].unit}{' but mm' if factor == 1000 else ''}: divide rows and "
@@ -180,7 +173,6 @@ def symmetry(azimuth_set: AzimuthSet) -> Iterator[Finding]:
             yield Finding(
                 "index shift",
                 DEFECT,
-                azimuth_set.name,
                 f"the stiffness block of blade {blade} is stored {abs(shift)} states off its place",
                 "a block of A is stored at the wrong index: report it to the authors of the program",
                 float(abs(shift)),
@@ -189,7 +181,6 @@ def symmetry(azimuth_set: AzimuthSet) -> Iterator[Finding]:
             yield Finding(
                 "asymmetric stiffness",
                 DEFECT,
-                azimuth_set.name,
                 f"blade {blade} alone has no symmetric mass and stiffness: eigenvalues of M⁻¹K are complex or negative "
                 f"({100 * worst:.2g} %)",
                 "rows or columns are mixed up, or the units of some states differ",
@@ -217,7 +208,6 @@ def damping(azimuth_set: AzimuthSet, modes: tuple[Mode, ...]) -> Iterator[Findin
     yield Finding(
         "negative damping",
         LIMIT if aerodynamic else DEFECT,
-        azimuth_set.name,
         f"{count(len(grow), 'mode')} with negative damping (worst: {worst.name}, {100 * worst.damping:.2g} %)",
         "an instability of the turbine, or of the linearisation: check another operating point"
         if aerodynamic
@@ -237,7 +227,6 @@ def digits(azimuth_set: AzimuthSet, modes: tuple[Mode, ...]) -> Iterator[Finding
         yield Finding(
             "truncated digits",
             DEFECT,
-            azimuth_set.name,
             f"{min(f.digits for f in azimuth_set.files)} printed digits leave {len(uncertain)} of {len(modes)} frequencies "
             f"uncertain by more than 1 % (worst: {worst.name}, {worst.frequency:.4g} Hz, {uncertainty})",
             'set OutFmt of the main input file to "ES18.9E3" or finer and linearise again',

@@ -20,7 +20,6 @@ def headers(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "header overflow",
             DEFECT,
-            azimuth_set.name,
             f"{count(len(fields), 'field')} printed as asterisks ({listed(list(fields))})",
             "the program that wrote the file lacks columns for these numbers; the tables were counted instead",
             float(len(fields)),
@@ -30,7 +29,6 @@ def headers(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "version drift",
             DEFECT,
-            azimuth_set.name,
             f"the azimuths were written by {len(versions)} versions ({listed(versions)})",
             "linearise all azimuths with one version",
             float(len(versions)),
@@ -40,7 +38,6 @@ def headers(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "truncated digits",
             DEFECT,
-            azimuth_set.name,
             f"entries of A have {digits} significant digits",
             'set OutFmt of the main input file to at least "ES18.9E3" and linearise again',
             float(digits),
@@ -58,7 +55,6 @@ def order(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "states reordered",
             NOTE,
-            azimuth_set.name,
             f"another order of the states in {len(reordered)} of {len(azimuth_set.files)} files ({listed(reordered)})",
             "sorted by their descriptions; programs that read by position mix them up",
             float(len(reordered)),
@@ -75,7 +71,6 @@ def order(azimuth_set: AzimuthSet) -> Iterator[Finding]:
             yield Finding(
                 "states reordered",
                 DEFECT,
-                azimuth_set.name,
                 f"{file.path.name}: {len(contradictions)} rows of the tables of states and of derivatives name different "
                 f"states (first: row {contradictions[0] if contradictions else len(file.states)})",
                 "the tables were edited or are of different models: linearise again",
@@ -104,7 +99,6 @@ def flags(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "fixed blade states",
             NOTE,
-            azimuth_set.name,
             f"{len(frozen_on_request)} states of BeamDyn are flagged as fixed",
             "as with RotStates = False; they are transformed to the rotating frame",
             float(len(frozen_on_request)),
@@ -114,7 +108,6 @@ def flags(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "frame flag",
             DEFECT,
-            azimuth_set.name,
             f"{count(len(misflagged), 'flag')} of the rotating frame against the description ({states})",
             "states of blades turn with the rotor, others do not: the frame was taken from the descriptions",
             float(len(misflagged)),
@@ -133,7 +126,6 @@ def completeness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "missing state",
             DEFECT,
-            azimuth_set.name,
             f"{count(len(single), 'state')} of second order without displacement or rate ({listed(single)})",
             "the table was edited: linearise again",
             float(len(single)),
@@ -155,7 +147,6 @@ def completeness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "missing state",
             DEFECT,
-            azimuth_set.name,
             f"{count(len(absent_motions), 'motion')} missing that other blades have ({listed(absent_motions)})",
             "enable the degree of freedom on all blades",
             float(len(absent_motions)),
@@ -170,7 +161,6 @@ def completeness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "missing state",
             DEFECT,
-            azimuth_set.name,
             f"a second mode is enabled without the first ({listed(skipped)})",
             "enable the first mode",
             float(len(skipped)),
@@ -179,7 +169,6 @@ def completeness(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "single blade",
             LIMIT,
-            azimuth_set.name,
             "only one blade moves while the rotor turns",
             "enable the degrees of freedom of all blades, or stop the rotor",
             1.0,
@@ -219,7 +208,6 @@ def kinematics(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "index shift",
             DEFECT,
-            azimuth_set.name,
             f"the rows of {count(times, 'displacement')} ({states}) are the rates {shift:+d} states further on",
             "a block of A is stored at the wrong index: report it to the authors of the program",
             float(shift),
@@ -228,7 +216,6 @@ def kinematics(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "states reordered",
             DEFECT,
-            azimuth_set.name,
             f"the rows of {count(len(shifts), 'displacement')} ({states}) are the rates of other states",
             "the table of states does not belong to the matrix: linearise again",
             float(len(shifts)),
@@ -237,7 +224,6 @@ def kinematics(azimuth_set: AzimuthSet) -> Iterator[Finding]:
         yield Finding(
             "kinematic rows",
             DEFECT,
-            azimuth_set.name,
             f"the rows of {count(len(shifts), 'displacement')} ({states}) are not those of their rates",
             "A is damaged, or the states are not displacements: linearise again",
             float(len(shifts)),
