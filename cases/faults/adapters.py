@@ -12,6 +12,7 @@ from ...references.protocol import registry
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ..solve import works
+from .alterations import answered
 from .seeding import Fault, Trial
 from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 
@@ -24,19 +25,6 @@ def altered_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     def make(original: Any) -> Any:
         def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
             return original(name, alter(blade), runs, *how)
-
-        return faulty
-
-    return make
-
-
-def answered(alter: Callable[[Modes], Modes]) -> Callable[[Any], Any]:
-    """The answer is altered."""
-
-    def make(original: Any) -> Any:
-        def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
-            answers = original(name, blade, runs, *how)
-            return [answer if isinstance(answer, Failure) else alter(answer) for answer in answers]
 
         return faulty
 

@@ -1,4 +1,4 @@
-"""Alterations of core, each a function from what core has right to what is wrong."""
+"""Alterations, each a function from what a function does right to what a wrong one does: of any function, and of core."""
 
 from collections.abc import Callable, Sequence
 from dataclasses import replace
@@ -10,10 +10,26 @@ from ...core.blade import BEND_Y, BEND_Z, TORSION, Blade
 from ...core.effects import Effects
 from ...core.element.mesh import Mesh
 from ...core.steady.blade_state import Steady
+from ...references.protocol.process import Failure
 from ..diagnosis import scaled_terms
 from ..solve import core_solver
 
 Balance = Callable[..., Steady]
+
+
+def returned(alter: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """The value that a function returns is altered."""
+    return lambda original: lambda *args, **kwargs: alter(original(*args, **kwargs))
+
+
+def answered(alter: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """The answers of a code are altered; failures stay as they are."""
+    return returned(lambda answers: [answer if isinstance(answer, Failure) else alter(answer) for answer in answers])
+
+
+def received(alter: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """A function receives another blade or turbine, its first argument."""
+    return lambda original: lambda subject, *args, **kwargs: original(alter(subject), *args, **kwargs)
 
 
 def with_effects(**omitted: bool) -> Callable[[Balance], Balance]:
@@ -43,15 +59,7 @@ def softening(factor: float, **omitted: bool) -> Callable[[Balance], Balance]:
 
 def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
     """The linearised matrices are altered."""
-
-    def make(original: Balance) -> Balance:
-        def faulty(*args: Any, **kwargs: Any) -> Steady:
-            state = original(*args, **kwargs)
-            return replace(state, pencil=alter(state.pencil))
-
-        return faulty
-
-    return make
+    return returned(lambda state: replace(state, pencil=alter(state.pencil)))
 
 
 def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
@@ -60,18 +68,6 @@ def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
     def make(original: Any) -> Any:
         def faulty(blade: Blade, *args: Any, **kwargs: Any) -> Mesh:
             return alter(original(blade, *args, **kwargs), blade)
-
-        return faulty
-
-    return make
-
-
-def alter_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
-    """A function receives a different blade."""
-
-    def make(original: Any) -> Any:
-        def faulty(blade: Blade, *args: Any, **kwargs: Any) -> Any:
-            return original(alter(blade), *args, **kwargs)
 
         return faulty
 
@@ -171,4 +167,4 @@ def scaled_strain(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any
 
 def core_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any], Any]]:
     """Where core's columns get their modes, with another blade."""
-    return core_solver, "mesh_sweep", alter_blade(alter)
+    return core_solver, "mesh_sweep", received(alter)

@@ -1,6 +1,6 @@
 """Faults in pairing, uncertainty, verdicts and readers."""
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -11,6 +11,7 @@ from ..judge.pairing import Pair
 from ..judge.spectrum import Spectrum
 from ..judge.uncertainty import Estimate
 from ..solve import published_tables, reference
+from .alterations import returned
 from .seeding import Fault, Seam, Trial
 from .trials import FAST, PARK
 
@@ -52,13 +53,7 @@ def inferred(original: Any) -> Any:
 
 
 def _sure(uncertainty: float | None) -> Any:
-    def make(original: Any) -> Any:
-        def faulty(*args: Any) -> Estimate:
-            return replace(original(*args), uncertainty=uncertainty)
-
-        return faulty
-
-    return make
+    return returned(lambda estimate: replace(estimate, uncertainty=uncertainty))
 
 
 def _extrapolated(original: Any) -> Any:
@@ -92,31 +87,17 @@ def _excuses(original: Any) -> Any:
     return faulty
 
 
-def _column(name: str, factor: float) -> Any:
-    def make(original: Any) -> Any:
-        def faulty(*args: Any) -> Any:
-            columns = original(*args)
-            return {**columns, name: factor * columns[name]}
-
-        return faulty
-
-    return make
+def _read(alter: Callable[[dict[str, Any]], dict[str, Any]]) -> tuple[Seam, ...]:
+    """The columns of a table of sections are altered."""
+    return ((blades, "read_table", returned(alter)),)
 
 
-def _exchanged(original: Any) -> Any:
-    def faulty(*args: Any) -> Any:
-        columns = original(*args)
-        return {**columns, "EI_flap [N m^2]": columns["EI_edge [N m^2]"], "EI_edge [N m^2]": columns["EI_flap [N m^2]"]}
-
-    return faulty
+def _exchanged(columns: dict[str, Any]) -> dict[str, Any]:
+    return {**columns, "EI_flap [N m^2]": columns["EI_edge [N m^2]"], "EI_edge [N m^2]": columns["EI_flap [N m^2]"]}
 
 
-def _backwards(original: Any) -> Any:
-    def faulty(*args: Any) -> Any:
-        columns = original(*args)
-        return {name: column if name == "fraction [-]" else column[::-1] for name, column in columns.items()}
-
-    return faulty
+def _backwards(columns: dict[str, Any]) -> dict[str, Any]:
+    return {name: column if name == "fraction [-]" else column[::-1] for name, column in columns.items()}
 
 
 def _digits(original: Any) -> Any:
@@ -170,11 +151,11 @@ FAULTS = (
     Fault("printed unit", "reader", "the unit of a table is wrong by 5 %", "+5 %",
           ((published_tables, "from_print", _numbers),), Trial("wright-flapwise", (12.0,), ())),
     Fault("table: axes exchanged", "reader", "EI_flap is read as EI_edge", "flapwise +50 %",
-          ((blades, "read_table", _exchanged),), OPENFAST),
+          _read(_exchanged), OPENFAST),
     Fault("table: stiffness unit", "reader", "EI_flap in kN m²", "flapwise −97 %",
-          ((blades, "read_table", _column("EI_flap [N m^2]", 1e-3)),), BMODES),
+          _read(lambda c: {**c, "EI_flap [N m^2]": 1e-3 * c["EI_flap [N m^2]"]}), BMODES),
     Fault("table: mass", "reader", "mass per length 3 % too large", "−1.5 % at rest",
-          ((blades, "read_table", _column("mass [kg/m]", 1.06)),), OPENFAST),
+          _read(lambda c: {**c, "mass [kg/m]": 1.06 * c["mass [kg/m]"]}), OPENFAST),
     Fault("table: tip first", "reader", "rows are read from the tip to the root", "factors",
-          ((blades, "read_table", _backwards),), OPENFAST),
+          _read(_backwards), OPENFAST),
 )  # fmt: skip

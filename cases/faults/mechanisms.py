@@ -13,12 +13,12 @@ from ...core.spectrum import modal
 from ...core.steady import periodic
 from ...core.tree.linearization import Linearization
 from ...references.protocol.interface import MechanismModes
-from ...references.protocol.process import Failure
 from ...references.protocol.worker import MechanismAnswer as Answer
 from ..judge import same
 from ..judge.pairing import Pair
 from ..judge.spectrum import Spectrum
 from ..solve import mechanism
+from .alterations import answered, returned
 from .seeding import Fault, Seam, Trial
 
 HINGED = Trial("hinged-blade", (30.0,), ())
@@ -44,23 +44,7 @@ DAMPED = Trial("hinged-blade", (30.0,), ("pinocchio-loops",))
 
 def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
     """Core's linearised equations of motion are altered at every azimuth."""
-
-    def make(original: Any) -> Any:
-        return lambda *args, **kwargs: alter(original(*args, **kwargs))
-
-    return (modal, "about", make), (periodic, "about", make)
-
-
-def _answered(alter: Callable[[MechanismModes], MechanismModes]) -> Callable[[Any], Any]:
-    """The answer of a code is altered."""
-
-    def make(original: Any) -> Any:
-        def faulty(*args: Any) -> list[Answer]:
-            return [answer if isinstance(answer, Failure) else alter(answer) for answer in original(*args)]
-
-        return faulty
-
-    return make
+    return (modal, "about", returned(alter)), (periodic, "about", returned(alter))
 
 
 def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
@@ -132,13 +116,13 @@ FAULTS = (
     Fault("loop: coupling", "solver", "the stiffness by which a loop couples two coordinates is dropped", "percents",
           _about(lambda linear: replace(linear, K=np.diag(np.diag(linear.K)))), LINKED),
     Fault("mechanism: damping lost", "adapter", "only the moduli of the eigenvalues are returned", "damping ratio 0.14",
-          ((mechanism, "answers", _answered(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
+          ((mechanism, "answers", answered(lambda m: replace(m, values=1j * np.abs(m.values)))),), DAMPED),
     Fault("mechanism: sixth digit", "adapter", "six digits of a code with the same equations", "1e-6",
-          ((mechanism, "answers", _answered(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
+          ((mechanism, "answers", answered(lambda m: replace(m, values=m.values * (1 + 1e-6)))),), ASKED),
     Fault("mechanism: one mode", "adapter", "the code returns only its first mode", "no answer",
-          ((mechanism, "answers", _answered(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
+          ((mechanism, "answers", answered(lambda m: replace(m, values=m.values[:1], shapes=m.shapes[:1]))),), ASKED),
     Fault("mechanism: shapes exchanged", "adapter", "shapes belong to other eigenvalues", "factors",
-          ((mechanism, "answers", _answered(_exchanged)),), DAMPED),
+          ((mechanism, "answers", answered(_exchanged)),), DAMPED),
     Fault("loop left open", "adapter", "the joint that closes the loop is dropped", "factors; no partner",
           ((mechanism, "answers", _given(_open)),), ASKED),
     Fault("mechanism: rotor at rest", "adapter", "the rotor's rate does not reach the code", "no frequency",
@@ -152,5 +136,5 @@ FAULTS = (
     Fault("mechanism: paired by number", "pairing", "modes are paired by their number", "a wrong shape counts",
           ((same, "pair", _by_number),), blinds="mechanism: mixed shapes"),
     Fault("mechanism: mixed shapes", "adapter", "every shape is a mixture of two", "MAC 0.5",
-          ((mechanism, "answers", _answered(_mixed)),), DAMPED),
+          ((mechanism, "answers", answered(_mixed)),), DAMPED),
 )  # fmt: skip

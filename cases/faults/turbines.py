@@ -11,10 +11,10 @@ from ...core.space import spatial as sp
 from ...core.space.inertia import about_centre, transformed
 from ...core.turbine import rotor as equations
 from ...core.turbine.turbine import Turbine, shaft_pose
-from ...references.protocol.process import Failure
 from ...references.protocol.turbines import TurbineModes
 from ..solve import turbine as solving
 from ..solve import turbine_weights
+from .alterations import answered, received
 from .seeding import Fault, Seam, Trial
 
 SHAFT = shaft_pose(2.0, -7.0, np.radians(-15.0))
@@ -40,11 +40,7 @@ TURBINE = Trial("nrel-5mw-turbine", (1.5,), ("exudyn-turbine",), _exaggerated)
 
 def _assembled(alter: Callable[[Turbine], Turbine]) -> tuple[Seam, ...]:
     """Core assembles a different turbine."""
-
-    def make(original: Any) -> Any:
-        return lambda turbine, *how: original(alter(turbine), *how)
-
-    return (solving, "machine", make), (turbine_weights, "machine", make)
+    return (solving, "machine", received(alter)), (turbine_weights, "machine", received(alter))
 
 
 def _projected(alter: Callable[[Any], Any]) -> tuple[Seam, ...]:
@@ -104,14 +100,7 @@ def plain_ratio(turbine: Turbine) -> Turbine:
 
 def _answered(alter: Callable[[TurbineModes], TurbineModes]) -> tuple[Seam, ...]:
     """The answer of a code is altered."""
-
-    def make(original: Any) -> Any:
-        def faulty(*args: Any) -> Any:
-            return [answer if isinstance(answer, Failure) else alter(answer) for answer in original(*args)]
-
-        return faulty
-
-    return ((solving, "turbine_answers", make),)
+    return ((solving, "turbine_answers", answered(alter)),)
 
 
 def _at_rest(original: Any) -> Any:
