@@ -24,7 +24,7 @@ from ..plan.user_results import UserResults
 from ..run.executors import Serial
 from ..solve.works import papers_equations
 from ..verify import matrix
-from .seeding import Fault, seeded
+from .seeding import seeded
 from .table import BY_NAME, FAST
 
 OF_THE_PAPER = ("whole end mass",)
@@ -93,7 +93,7 @@ def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse
         paper = fault.name in OF_THE_PAPER
         fastest = _Witnessed(subject.case, variant, paper)
         if not codes and not paper:
-            out.append(replace(_control(fault, fastest), needs=NO_WITNESS))
+            out.append(replace(fault.control(fastest.name, max(fastest.points)), needs=NO_WITNESS))
             continue
 
         def solve(of: BladeSubject = fastest) -> tuple[Cell, ...]:
@@ -103,7 +103,7 @@ def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse
             correct_cells[paper] = solve()
         with seeded(fault.seams):
             faulty_cells = solve()
-        out.append(judged(_control(fault, fastest), correct_cells[paper], faulty_cells))
+        out.append(judged(fault.control(fastest.name, max(fastest.points)), correct_cells[paper], faulty_cells))
     return out
 
 
@@ -130,7 +130,3 @@ def judged(control: Control, correct_cells: Sequence[Cell], faulty_cells: Sequen
 
 def _key(cell: Cell) -> tuple[str, float, int, str, str]:
     return cell.code, cell.omega, cell.mode, cell.quantity, cell.where
-
-
-def _control(fault: Fault, subject: BladeSubject) -> Control:
-    return Control(fault.name, fault.area, fault.what, fault.size, subject.name, max(subject.points), ())

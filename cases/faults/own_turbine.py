@@ -63,9 +63,7 @@ def run(subject: TurbineSubject, codes: Sequence[str], names: Sequence[str], reu
     with seeded((_remembered(),)):
         correct_cells = solve() if codes else ()
         for fault in (BY_NAME[name] for name in names):
-            control = Control(
-                fault.name, fault.area, fault.what, fault.size, subject.name, max(subject.points), detected_by=()
-            )
+            control = fault.control(subject.name, max(subject.points))
             if not codes:
                 out.append(replace(control, needs=NO_WITNESS))
                 continue

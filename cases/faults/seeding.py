@@ -92,6 +92,10 @@ class Fault:
     blinds: str = ""
     fast: bool = False
 
+    def control(self, case: str, omega: float) -> Control:
+        """The result on a case at a rotor speed, rad/s, if nothing detects the fault."""
+        return Control(self.name, self.area, self.what, self.size, case, omega, ())
+
 
 _LOCK = RLock()
 
@@ -232,13 +236,5 @@ def _name(cell: Cell) -> str:
 
 
 def _control(fault: Fault, detected_by: tuple[str, ...]) -> Control:
-    trial = fault.trial
-    return Control(
-        control=fault.name,
-        area=fault.area,
-        what=fault.what,
-        size=fault.size,
-        case=trial.case if trial else "",
-        omega=max(trial.speeds) if trial else 0.0,
-        detected_by=detected_by,
-    )
+    case, omega = (fault.trial.case, max(fault.trial.speeds)) if fault.trial else ("", 0.0)
+    return replace(fault.control(case, omega), detected_by=detected_by)
