@@ -221,14 +221,14 @@ class PropertyCheck:
         version: its version.
         quantity: ``reading``, ``fingerprint`` (of a code's model), or ``invariance`` (another description of the blade).
         part: the property: ``edgewise stiffness``, ``mass``, ``stations split``; empty if nothing is compared.
+        target: relative.
+        verdict: pass, fail, inconclusive (a fingerprint that refinement still changes), not run, or not applicable.
+        reason: one line for any verdict other than a plain pass.
         value: in Southwell's reading, in the code's model, or the frequency of the mode that changes most; None if infinite.
         reference: in the second reading, by quadrature of its stations, or the frequency of the blade as given; None if
             infinite.
         unit: of both.
         difference: relative; None if it is infinite, or nothing is compared.
-        target: relative.
-        verdict: pass, fail, inconclusive (a fingerprint that refinement still changes), not run, or not applicable.
-        reason: one line for any verdict other than a plain pass.
     """
 
     case: str
@@ -236,13 +236,13 @@ class PropertyCheck:
     version: str
     quantity: Literal["reading", "fingerprint", "invariance"]
     part: str
-    value: float | None
-    reference: float | None
-    unit: str
-    difference: float | None
     target: float
     verdict: Verdict
     reason: str = ""
+    value: float | None = None
+    reference: float | None = None
+    unit: str = ""
+    difference: float | None = None
 
 
 @dataclass(frozen=True)

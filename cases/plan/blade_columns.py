@@ -17,7 +17,7 @@ from ..solve.reference import relevant_effects
 from ..solve.refinement import Refining
 from ..solve.works import as_in_source, papers_equations, refined_code, same_code
 from . import deck_columns
-from .column import Column, absent_work, failing_work, not_installed
+from .column import Column, declined, unasked
 
 ROUNDING_TARGET = 1e-8
 """Target for two codes with the same discretisation."""
@@ -57,28 +57,18 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
             Column(table.name, relevant_effects(table.series.effects, blade), head, work, origin, due="somewhere")
         )
     takers = [code for code in codes if code.blades]
-    if not takers:
-        out += [_mechanisms_only(variant.name, code, target) for code in codes]
+    for code in codes if not takers else []:
+        head = Head(variant.name, code.name, code.version or "", "code", target)
+        out.append(declined(head, ALL_EFFECTS, "the code takes mechanisms, not blades"))
     for code in takers:
         head = Head(variant.name, code.name, code.version or "", "code", target, code.shares, code.motions)
         out.append(replace(_code(head, code, blade, limits), origin=_origin(code, blade)))
     return out + deck_columns.columns(variant, codes, limits, target)
 
 
-def _mechanisms_only(case: str, code: Description, target: float) -> Column:
-    head = Head(case, code.name, code.version or "", "code", target)
-    absent = absent_work(head, "not applicable", "the code takes mechanisms, not blades")
-    return Column(code.name, ALL_EFFECTS, head, absent, solves=False)
-
-
 def _code(head: Head, code: Description, blade: Blade, limits: Limits) -> Column:
-    if code.failure:
-        return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure), solves=False)
-    if code.refused and code.refused[0]:
-        refused = absent_work(head, "not applicable", code.refused[0])
-        return Column(code.name, ALL_EFFECTS, head, refused, solves=False)
-    if code.version is None:
-        return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)), solves=False)
+    if column := unasked(head, code, next(iter(code.refused), None) or ""):
+        return column
     name, effects = code.asked, relevant_effects(code.effects, blade)
     if code.shares == "discretisation":
         head = replace(head, role="same discretisation", target=ROUNDING_TARGET)

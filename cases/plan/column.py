@@ -8,12 +8,11 @@ from dataclasses import dataclass
 from functools import partial
 from typing import Any, Literal
 
-from ...core.effects import Effects
+from ...core.effects import ALL_EFFECTS, Effects
 from ...references.protocol.description import Description
 from ...references.protocol.interface import Independence
 from ...references.protocol.process import Failure
 from ..judge.cells import Head, Rows, empty, failing, without_reference
-from ..judge.results import Verdict
 from ..solve.works import References
 
 
@@ -68,24 +67,26 @@ class Column:
         return without + cells, levels
 
 
-def not_installed(code: Description) -> Failure:
-    """The failure of a code that is not installed."""
-    return Failure("not installed", f"not installed: {code.hint}")
+def declined(head: Head, effects: Effects, reason: str) -> Column:
+    """The column of a code that does not take the subject."""
+    return Column(head.code, effects, head, partial(_absent, head, reason), solves=False)
 
 
-def failing_work(head: Head, failure: Failure) -> Callable[[Any], Rows]:
-    """The work of a code that failed before its first question."""
-    return partial(_failing, head, failure)
+def unasked(head: Head, code: Description, refusal: str) -> Column | None:
+    """The column of a code that failed before its first question, declines the subject or is not installed.
 
-
-def absent_work(head: Head, verdict: Verdict, reason: str) -> Callable[[Any], Rows]:
-    """The work of a code that is not asked."""
-    return partial(_absent, head, verdict, reason)
+    None if the code can be asked. ``refusal``: why it declines the subject; empty if it takes it.
+    """
+    if refusal and not code.failure:
+        return declined(head, ALL_EFFECTS, refusal)
+    missing = Failure("not installed", f"not installed: {code.hint}") if code.version is None else None
+    failure = code.failure or missing
+    return failure and Column(head.code, ALL_EFFECTS, head, partial(_failing, head, failure), solves=False)
 
 
 def _failing(head: Head, failure: Failure, core: References) -> Rows:
     return failing(head, failure, [omega for omega, _ in core])
 
 
-def _absent(head: Head, verdict: Verdict, reason: str, core: References) -> Rows:
-    return [empty(head, omega, verdict, reason) for omega, _ in core], []
+def _absent(head: Head, reason: str, core: References) -> Rows:
+    return [empty(head, omega, "not applicable", reason) for omega, _ in core], []

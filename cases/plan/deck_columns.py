@@ -14,7 +14,7 @@ from ..judge.cells import Head
 from ..solve.deck import deck_code
 from ..solve.reference import relevant_effects
 from ..solve.refinement import Refining
-from .column import Column, absent_work
+from .column import Column, declined
 
 PATH = f"{pybmodes.__name__}:CODE"
 
@@ -30,7 +30,7 @@ def columns(variant: Variant, codes: Sequence[Description], limits: Limits, targ
     head = Head(variant.name, code.name, asked.version or "", "code", target, "nothing", motions)
     effects = relevant_effects(code.effects, blade)
     if reason := code.unsupported(blade):
-        return [Column(code.name, effects, head, absent_work(head, "not applicable", reason), solves=False)]
+        return [declined(head, effects, reason)]
     refining = Refining(code.levels, code.order, code.finest or 8 * code.levels[-1])
     work = partial(deck_code, head, PATH, deck(file), blade, effects, refining, limits)
     return [Column(code.name, effects, head, work, code.independence)]

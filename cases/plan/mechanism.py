@@ -1,10 +1,9 @@
 """A mechanism as a subject: solved at several rotor speeds by every code that accepts mechanisms, compared with core."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from importlib.metadata import version
-from typing import Any
 
 import numpy as np
 from msgspec import UNSET
@@ -20,11 +19,11 @@ from ..input.errors import CaseError, nearest
 from ..input.mechanism_schema import Compare
 from ..input.mechanisms import Described
 from ..input.schema import rad_s
-from ..judge.cells import Head, Rows
+from ..judge.cells import Head
 from ..judge.results import Setting
 from ..solve.mechanism import QUANTITIES, asked, compared, formula, references
 from ..solve.reference import References
-from .column import Column, absent_work, failing_work, not_installed
+from .column import Column, unasked
 from .subject import NotABlade
 from .user_results import UserResults
 
@@ -140,21 +139,12 @@ def _columns(described: Described, compare: Compare, codes: Sequence[Description
     out = []
     for code in [code for code in codes if code.mechanisms] or codes:
         head = Head(name, code.name, code.version or "", "same discretisation", target, code.shares)
-        work = _work(head, described, code, limits)
-        solves = code.mechanisms and not code.failure and code.version is not None
-        out.append(Column(code.name, ALL_EFFECTS, head, work, code.independence, solves=solves))
+        refusal = "" if code.mechanisms else "the code takes blades, not mechanisms"
+        work = partial(compared, head, described, partial(asked, code.asked, head.version, limits))
+        column = unasked(head, code, refusal) or Column(code.name, ALL_EFFECTS, head, work)
+        out.append(replace(column, origin=code.independence))
     if form := described.text.closed_form:
         head = Head(name, "closed form", f"southwell {version('southwell')}", "same discretisation", target, "nothing")
         work = partial(compared, head, described, partial(formula, form))
         out.append(Column(head.code, ALL_EFFECTS, head, work, _BY_HAND))
     return out
-
-
-def _work(head: Head, described: Described, code: Description, limits: Limits) -> Callable[[Any], Rows]:
-    if code.failure:
-        return failing_work(head, code.failure)
-    if not code.mechanisms:
-        return absent_work(head, "not applicable", "the code takes blades, not mechanisms")
-    if code.version is None:
-        return failing_work(head, not_installed(code))
-    return partial(compared, head, described, partial(asked, code.asked, code.version, limits))

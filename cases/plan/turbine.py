@@ -31,7 +31,7 @@ from ..solve.refinement import Refining
 from ..solve.turbine import MOTION, references, refined_code
 from ..solve.turbine_reading import read_again
 from . import linearised
-from .column import Column, absent_work, failing_work, not_installed
+from .column import Column, unasked
 from .settings import NOT_USED
 from .subject import NOT_CHECKED, NotABlade, PropertyChecks
 from .user_results import UserResults
@@ -138,13 +138,8 @@ class TurbineSubject(NotABlade):
 
     def _column(self, code: Description, limits: Limits) -> Column:
         head = Head(self.name, code.name, code.version or "", "code", self.target, code.shares, (MOTION,))
-        if code.failure:
-            return Column(code.name, ALL_EFFECTS, head, failing_work(head, code.failure), solves=False)
-        if not code.turbines:
-            absent = absent_work(head, "not applicable", "the code does not take turbines")
-            return Column(code.name, ALL_EFFECTS, head, absent, solves=False)
-        if code.version is None:
-            return Column(code.name, ALL_EFFECTS, head, failing_work(head, not_installed(code)), solves=False)
+        if column := unasked(head, code, "" if code.turbines else "the code does not take turbines"):
+            return column
         refining = Refining(code.levels, code.order, code.finest or code.levels[-1])
         work = partial(refined_code, head, code.asked, self.turbine, refining, limits)
         return Column(code.name, ALL_EFFECTS, head, work, code.independence)

@@ -58,8 +58,8 @@ class Invariances:
 
     def _row(self, invariance: Invariance, as_given: list[Modes]) -> PropertyCheck:
         row = PropertyCheck(
-            *(self.case, CORE, version("southwell"), "invariance", invariance.name),
-            *(None, None, "rad/s", None, ACCURACY, "not applicable"),
+            *(self.case, CORE, version("southwell"), "invariance", invariance.name, ACCURACY, "not applicable"),
+            unit="rad/s",
         )
         try:
             first, second, error = self._solved(invariance, as_given)

@@ -53,9 +53,7 @@ def read_again(case: str, turbine: Turbine, path: Path, mount: Mount | None = No
     try:
         second, reader = (hawc2_turbine if path.suffix.lower() == ".htc" else openfast_turbine).read(path)
     except NotReadError as error:
-        return [
-            PropertyCheck(case, "second reader", "", "reading", "", None, None, "", None, TARGET, "not run", str(error))
-        ]
+        return [PropertyCheck(case, "second reader", "", "reading", "", TARGET, "not run", str(error))]
     name, _, version = reader.rpartition(" ")
     own = quantities(turbine)
     sizes: dict[str, float] = {}
@@ -72,9 +70,8 @@ def read_again(case: str, turbine: Turbine, path: Path, mount: Mount | None = No
         reason = "" if agrees else f"{what}: reader {own[what]:.6g} {unit}, {reader} {value:.6g}".strip()
         rows.append(
             PropertyCheck(
-                *(case, name, version, "reading", what, own[what], value, unit, float(difference), TARGET),
-                "pass" if agrees else "fail",
-                reason,
+                *(case, name, version, "reading", what, TARGET, "pass" if agrees else "fail", reason),
+                *(own[what], value, unit, float(difference)),
             )
         )
     return rows

@@ -1,7 +1,7 @@
 """Mass, mass centre and inertia of the turbine that each code assembles, against those of the second reading of its files."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from functools import partial
 from importlib.metadata import version
 from pathlib import Path
 
@@ -26,7 +26,7 @@ from ...references.readers.quadrature import Mounted
 from ...references.readers.stations import NotReadError
 from ...references.readers.turbine_mass import Weighed
 from ..judge.results import PropertyCheck
-from .properties import CORE, unweighed
+from .properties import CORE, Weighing, unweighed
 
 TARGET = 1e-5
 """Largest difference: rigid bodies and integrals of sections are the same in every discretisation."""
@@ -83,45 +83,29 @@ def rows(case: str, code: str, release: str, model: Fingerprint, weighed: Weighe
         reason = f"{name}: {value:.6g} {unit} in the code's model, {reference:.6g} {unit} by the second reading"
         out.append(
             PropertyCheck(
-                *(case, code, release, "fingerprint", name, value, reference, unit, difference, TARGET),
-                "fail" if fails else "pass",
-                reason if fails else "",
+                *(case, code, release, "fingerprint", name, TARGET),
+                *(("fail", reason) if fails else ("pass", "")),
+                *(value, reference, unit, difference),
             )
         )
     return out
 
 
-@dataclass(frozen=True)
-class TurbineWeighing:
-    """The task that compares the turbine that one code assembles; attributes as for ``properties.Weighing``."""
-
-    case: str
-    turbine: Turbine
-    weighed: Weighed
-    description: Description
-    limits: Limits
-    storable: bool = False
-
-    @property
-    def code(self) -> str:
-        """Name of the code."""
-        return self.description.name
-
-    def __call__(self) -> list[PropertyCheck]:
-        """The rows: one for each property, or one with the reason why there are none."""
-        code, release = self.description, self.description.version or ""
-        (model,) = fingerprints(code.asked, self.turbine, code.levels[:1], self.limits, release)
-        if isinstance(model, Fingerprint) and model.inertia is not None:
-            return rows(self.case, code.name, release, model, self.weighed)
-        return [unweighed(self.case, code.name, release, model, TARGET)]
-
-
 def weighings(
     case: str, turbine: Turbine, weighed: Weighed, codes: Sequence[Description], limits: Limits
-) -> list[TurbineWeighing]:
+) -> list[Weighing]:
     """The tasks of all codes that take turbines."""
     ready = (code for code in codes if code.turbines and not code.failure and code.version)
-    return [TurbineWeighing(case, turbine, weighed, code, limits) for code in ready]
+    return [Weighing(code.name, partial(_weighed, case, turbine, weighed, code, limits)) for code in ready]
+
+
+def _weighed(case: str, turbine: Turbine, weighed: Weighed, code: Description, limits: Limits) -> list[PropertyCheck]:
+    """The rows of the turbine that a code assembles; ``limits`` are those of the code."""
+    release = code.version or ""
+    (model,) = fingerprints(code.asked, turbine, code.levels[:1], limits, release)
+    if isinstance(model, Fingerprint) and model.inertia is not None:
+        return rows(case, code.name, release, model, weighed)
+    return [unweighed(case, code.name, release, model, TARGET)]
 
 
 def of_solver(case: str, turbine: Turbine, weighed: Weighed) -> list[PropertyCheck]:

@@ -24,7 +24,7 @@ from ..judge.results import Cell, Run
 from ..judge.spectrum import Answer, of_blade
 from ..judge.verdict import judge, percent, unsigned
 from ..plan.blade import BladeSubject
-from ..plan.column import Column, ColumnError, absent_work
+from ..plan.column import Column, ColumnError, declined
 from ..plan.request import Execution, Request
 from ..plan.subject import NOT_CHECKED, PropertyChecks
 from ..plan.user_results import UserResults
@@ -108,7 +108,7 @@ def _column(solver: UserSolver, variant: Variant, compare: Compare) -> Column:
     head = Head(variant.name, solver.name, "", "code", solver.target or compare.target, "nothing")
     effects = relevant_effects(solver.effects, variant.blade)
     if why := solver.unsupported(variant.blade):
-        return Column(solver.name, effects, head, absent_work(head, "not applicable", why), solves=False)
+        return declined(head, effects, why)
     return Column(solver.name, effects, head, partial(_rows, head, solver, variant, compare), bundled=False)
 
 

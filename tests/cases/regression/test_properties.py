@@ -20,7 +20,9 @@ from southwell.reports.dashboard.write import write
 from ...reports.cli.test_cli import southwell
 from .test_history import CELL, RUN
 
-READING = PropertyCheck("beam", "weio", "2.0.0", "reading", "edgewise stiffness", 3.0, 3.0, "N m²", 0.0, 1e-6, "pass")
+READING = PropertyCheck(
+    "beam", "weio", "2.0.0", "reading", "edgewise stiffness", 1e-6, "pass", "", 3.0, 3.0, "N m²", 0.0
+)
 MODEL = replace(READING, code="southwell", quantity="fingerprint", part="mass", unit="kg")
 TURNED = replace(READING, code="southwell", quantity="invariance", part="section axes turned", unit="rad/s")
 CHECKS = (READING, MODEL, TURNED)
