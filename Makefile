@@ -16,6 +16,11 @@ export OPENBLAS_NUM_THREADS := 1
 # imported; pip would compile all of them
 unexport PYTHONDONTWRITEBYTECODE
 
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile
+# prints the libraries that pyproject.toml names, and those of the extras in its arguments
+LIBRARIES := import sys, tomllib; p = tomllib.load(open('pyproject.toml', 'rb'))['project']; \
+	print(*p['dependencies'], *(name for extra in sys.argv[1:] for name in p['optional-dependencies'][extra]), sep='\n')
+
 .PHONY: verify test test-slow test-all coverage lint style types bench readme docs clean
 
 verify: $(INSTALLED)
@@ -34,7 +39,7 @@ test-all: $(INSTALLED)
 	$(BIN)/pytest $(IN_PARALLEL)
 
 coverage: $(INSTALLED)
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check 'pytest-cov>=6'
+	$(PIP) 'pytest-cov>=6'
 	$(BIN)/pytest $(IN_PARALLEL) -m "not slow" --cov=southwell --cov-report=term:skip-covered
 
 lint: style types
@@ -58,16 +63,18 @@ readme: $(INSTALLED)
 
 # into build/site, with the results of the last make verify if any; run as a module, because the script would import the
 # command southwell, which lies beside it, instead of the package
-# the extra docs alone: an installation of `.[docs]` compiles the kernels again
-DOCS := import tomllib; print(*tomllib.load(open('pyproject.toml', 'rb'))['project']['optional-dependencies']['docs'], sep='\n')
+# the libraries of the extra docs alone: an installation of `.[docs]` compiles the kernels again
 docs: $(INSTALLED)
-	$(BIN)/python -c "$(DOCS)" | $(BIN)/python -m pip install --quiet --disable-pip-version-check --requirement /dev/stdin
+	$(BIN)/python -c "$(LIBRARIES)" docs | $(PIP) --requirement /dev/stdin
 	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build
 
+# the kernels are compiled while the libraries are installed
 $(INSTALLED): pyproject.toml setup.py $(KERNELS)
 	$(if $(strip $(PYTHON)),,$(error No Python 3.11 or later found: install one, or name it: make PYTHON=/path/to/python3))
 	$(PYTHON) -m venv .venv
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --no-compile --editable '.[codes,readers,dev]'
+	$(PIP) --no-deps --editable . & kernels=$$!; \
+	$(BIN)/python -c "$(LIBRARIES)" codes readers dev | $(PIP) --requirement /dev/stdin; libraries=$$?; \
+	wait $$kernels && exit $$libraries
 	mkdir -p $(HERE) && ln -sfn ../.. $(HERE)/southwell
 	touch $@
 
