@@ -27,15 +27,26 @@ def browser() -> Iterator[Any]:
         running.close()
 
 
+TIMEOUT_MS = 120_000
+"""Longest that a page may take to load, ms: a busy machine takes more than Playwright's 30 s."""
+
+
+def page(running: Any, **options: Any) -> Any:
+    """A page, in a context of its own with these options."""
+    made = running.new_page(**options)
+    made.set_default_timeout(TIMEOUT_MS)
+    return made
+
+
 @contextmanager
 def tab(running: Any) -> Iterator[Any]:
     """A page whose console must stay silent, which opens no dialog, and fetches nothing from elsewhere."""
-    page = running.new_page(viewport={"width": 1280, "height": 900})
+    opened = page(running, viewport={"width": 1280, "height": 900})
     said: list[str] = []
-    page.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
-    page.on("pageerror", lambda e: said.append(str(e)))
-    page.on("dialog", lambda d: (said.append(d.message), d.dismiss()))
-    page.on("request", lambda r: said.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
-    yield page
-    page.close()
+    opened.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
+    opened.on("pageerror", lambda e: said.append(str(e)))
+    opened.on("dialog", lambda d: (said.append(d.message), d.dismiss()))
+    opened.on("request", lambda r: said.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
+    yield opened
+    opened.close()
     assert said == []

@@ -44,8 +44,8 @@ DEFECTS = (
     Defect(
         ("pinocchio",),
         "pinocchio_composite_joint",
-        "`computeRNEADerivatives` is wrong, silently, for a composite joint that translates and rotates.",
-        "Each body has four joints; derivatives without their symmetry are an error.",
+        "`computeRNEADerivatives` returns wrong derivatives, without an error, for a composite joint that translates and rotates.",
+        "Each body has four joints; derivatives that lack their symmetry raise an error.",
     ),
     Defect(
         ("exudyn-ancf", "exudyn-tree", "exudyn-loops"),
@@ -82,19 +82,19 @@ DEFECTS = (
         ("calculix",),
         "calculix_substructure",
         "`*SUBSTRUCTURE GENERATE` fixes the nodes that are not retained instead of eliminating them.",
-        "Stored matrices are condensed by Southwell's own solver; a stiffness that resists rigid motions is an error.",
+        "Southwell condenses the stored matrices itself; a stiffness that resists rigid motions raises an error.",
     ),
     Defect(
         ("scikit-fem",),
         "scikit_fem_hermite",
-        "An `ElementLineHermite` used on a second mesh keeps the first one's functions, silently.",
-        "The adapter makes a new element for every mesh.",
+        "An `ElementLineHermite` used on a second mesh keeps the functions of the first mesh, without an error.",
+        "The adapter creates a new element for every mesh.",
     ),
     Defect(
         ("sharpy",),
         "sharpy_triads",
-        "Sections of curved elements have wrong axes: tangents are in the order of the nodes along the element "
-        "but read in that of the connectivities.",
+        "Sections of curved elements have wrong axes: tangents are stored in the order of the nodes along the "
+        "element and read in the order of the connectivities.",
         "The sections' rotation vectors are set after the beam is built.",
         environment="sharpy",
     ),

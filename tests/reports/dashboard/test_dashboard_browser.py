@@ -280,7 +280,7 @@ def test_the_blade_moves_and_stops(tab: Any, site: Path) -> None:
 
 
 def test_who_asked_for_less_motion_gets_none(browser: Any, site: Path) -> None:
-    quiet = browser.new_context(reduced_motion="reduce").new_page()
+    quiet = browsers.page(browser, reduced_motion="reduce")
     quiet.goto((site / page("park-cantilever")).as_uri())
     first = quiet.evaluate("document.querySelector('canvas').toDataURL()")
     quiet.wait_for_timeout(150)
@@ -393,7 +393,7 @@ NARROW = ["index.html", page("park-cantilever"), page("nrel-5mw"), page(HOSTILE)
 
 @pytest.mark.parametrize("name", [*NARROW, page("pybmodes", "code").replace("code-", "run-2/code-")])
 def test_on_a_phone_only_heat_maps_scroll_sideways(browser: Any, site: Path, name: str) -> None:
-    phone = browser.new_page(viewport={"width": 390, "height": 844})
+    phone = browsers.page(browser, viewport={"width": 390, "height": 844})
     phone.goto((site / name).as_uri())
     assert phone.evaluate("document.documentElement.scrollWidth") <= 390
     for summary in phone.locator("summary").all():
@@ -407,7 +407,7 @@ def test_on_a_phone_only_heat_maps_scroll_sideways(browser: Any, site: Path, nam
 
 
 def test_printed_it_is_dark_on_white_and_whole(browser: Any, site: Path) -> None:
-    dark = browser.new_context(color_scheme="dark", viewport={"width": 1000, "height": 700}).new_page()
+    dark = browsers.page(browser, color_scheme="dark", viewport={"width": 1000, "height": 700})
     dark.goto((site / "index.html").as_uri())
     paper = "getComputedStyle(document.body).backgroundColor"
     assert dark.evaluate(paper) != "rgb(255, 255, 255)"

@@ -56,7 +56,7 @@ def test_a_frame_is_the_mode_at_its_phase(result: CampbellResult) -> None:
 def test_the_page_is_drawn_without_a_network(result: CampbellResult, tmp_path: Path) -> None:
     path = interactive.write(result.diagram, tmp_path, RPM, 1)
     with browsers.browser() as running:
-        page, fetched = running.new_page(), []
+        page, fetched = browsers.page(running), []
         page.on("request", lambda r: fetched.append(r.url) if r.url.startswith("http") else None)
         page.goto(path.as_uri())
         page.wait_for_selector(".scatterlayer .trace")

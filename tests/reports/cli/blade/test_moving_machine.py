@@ -64,7 +64,7 @@ def test_a_collective_mode_moves_the_blades_alike(diagram: MachineDiagram) -> No
 def test_the_page_moves_and_follows_a_click(diagram: MachineDiagram, tmp_path: Path) -> None:
     path = moving_machine.write(diagram, tmp_path, RPM)
     with browsers.browser() as running:
-        page = running.new_page()
+        page = browsers.page(running)
         page.goto(path.as_uri())
         page.wait_for_function("document.querySelectorAll('#mode option').length === 6")
         page.evaluate("play(false); select(1, 0)")
