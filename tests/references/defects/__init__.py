@@ -44,7 +44,8 @@ DEFECTS = (
     Defect(
         ("pinocchio",),
         "pinocchio_composite_joint",
-        "`computeRNEADerivatives` returns wrong derivatives, without an error, for a composite joint that translates and rotates.",
+        "`computeRNEADerivatives` returns wrong derivatives, without an error, for a composite joint that "
+        "translates and rotates.",
         "Each body has four joints; derivatives that lack their symmetry raise an error.",
     ),
     Defect(
