@@ -111,10 +111,9 @@ class MachineDiagram:
 def machine_diagram(
     turbine: Turbine,
     request: MachineRequest,
-    on_speed: Callable[[float], None] = lambda omega: None,
     at: Callable[[float], str] = rad_s,
 ) -> MachineDiagram:
-    """Compute a turbine's diagram; ``on_speed`` is called with each solved speed.
+    """Compute a turbine's diagram.
 
     Raises:
         CaseError: fewer than two speeds, or no stable steady state at one.
@@ -134,7 +133,6 @@ def machine_diagram(
             made = machine(turbine, resolution)
             for speed in speeds:
                 out.append(turbine_modes(made, float(speed), request.modes + SPARE))
-                on_speed(float(speed))
         except PeriodicError as error:
             raise CaseError(f"{turbine.name}: {error}") from error
         except NO_STATE as error:

@@ -1,14 +1,14 @@
 """Named frequencies of a blade at each rotor speed, computed by core; ``tracked`` follows modes from speed to speed."""
 
 import warnings
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ...core import solve
 from ...core.blade import Blade
 from ...core.participation import families, numbered, participation
 from ...core.spectrum.refinement import AccuracyWarning
-from ..input.errors import NO_STATE, rad_s, unsteady
+from ..input.errors import NO_STATE, unsteady
 from ..judge.pairing import aligned, weights
 
 
@@ -40,11 +40,8 @@ def sweep(
     count: int,
     accuracy: float = 1e-6,
     allow_large_strain: bool = False,
-    at: Callable[[float], str] = rad_s,
 ) -> Iterator[list[Named]]:
     """Yield the ``count`` lowest modes (or all, if fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
-
-    ``at`` names a speed in an error, in the unit in which it was given.
 
     Raises:
         CaseError: if a speed has no stable steady state, or one of large strain.
@@ -57,7 +54,7 @@ def sweep(
                 warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the rows
                 modes = aligned(next(answers), weight)
         except NO_STATE as error:
-            raise unsteady(blade.name, omega, error, at) from error
+            raise unsteady(blade.name, omega, error) from error
         rows = zip(numbered(families(participation(modes, blade))), modes.frequencies, modes.uncertainty, strict=True)
         yield [
             Named(float(omega), mode, name, float(frequency), float(uncertainty), modes.strain)

@@ -45,6 +45,9 @@ TRIED_PAIRS, FITTED_PAIRS, FITTED = 8, 3, 4
 PROMISING = 0.5
 """Largest chance, by the linear estimate, of what is solved, apart from the best factor."""
 
+SHOWN = 5
+"""Largest number of causes returned."""
+
 NOISE = 1.5
 """A cause that leaves at most this multiple of the uncertainty (root mean square) needs no factor and no second cause."""
 
@@ -111,14 +114,13 @@ def chance(share: float, dimensions: int, kinds: int, fitted: int = 0) -> float:
     return min(1.0, kinds * probability)
 
 
-def rank(problem: Problem, difference: Array, uncertainty: float, limit: int = 5) -> Ranking:
+def rank(problem: Problem, difference: Array, uncertainty: float) -> Ranking:
     """Rank single hypotheses, those with a fitted factor, and, if more remains than the uncertainty, pairs.
 
     Args:
         problem: the blade, speeds and modes.
         difference: (S, M) logarithms of the ratios of the program's frequencies to the solver's; nan where unknown.
         uncertainty: relative; differences up to this need no cause.
-        limit: number of causes returned.
     """
     search = _Search(problem, difference, uncertainty)
     single, invisible = search.fixed()
@@ -127,12 +129,12 @@ def rank(problem: Problem, difference: Array, uncertainty: float, limit: int = 5
         factors = (name for name, hypothesis in problem.hypotheses.items() if hypothesis.fitted)
         slopes = {name: effect(problem, ((name, FIT_STEP),)) / np.log(FIT_STEP) for name in factors}
         slopes = {name: slope for name, slope in slopes.items() if search.is_visible(0.1 * slope)}
-        causes += search.fitted((), slopes, FITTED)
+        causes += search.fitted(slopes)
         if not search.is_enough(causes):
             causes += search.pairs(single, slopes)
     best = _ordered(causes)
     ties = tuple(cause for cause in best[1:] if cause.named and search.is_tied(cause, best[0])) if best else ()
-    return Ranking(tuple(best[:limit]), ties, tuple(invisible))
+    return Ranking(tuple(best[:SHOWN]), ties, tuple(invisible))
 
 
 def _ordered(causes: Sequence[Cause]) -> list[Cause]:
@@ -190,14 +192,14 @@ class _Search:
         best = min((cause.rms for cause in causes if cause.named), default=np.inf)
         return best <= NOISE * self.uncertainty
 
-    def fitted(self, changes: tuple[Change, ...], slopes: dict[str, Array], limit: int) -> list[Cause]:
+    def fitted(self, slopes: dict[str, Array]) -> list[Cause]:
         """Causes with a factor: those that explain most to first order, with the factor refined."""
         finite = np.isfinite(self.difference)
         D = self.difference[finite]
         squares = {name: _remainder(D, slope[finite]) for name, slope in slopes.items()}
-        best = sorted(squares, key=lambda name: squares[name])[:limit]
+        best = sorted(squares, key=lambda name: squares[name])[:FITTED]
         promising = best[:1] + [name for name in best[1:] if self._is_promising(squares[name], len(slopes), 1)]
-        return [self._refined(changes, name, slopes[name], len(slopes)) for name in promising]
+        return [self._refined((), name, slopes[name], len(slopes)) for name in promising]
 
     def _is_promising(self, square: float, kinds: int, fitted: int = 0) -> bool:
         size = float((self.difference[np.isfinite(self.difference)] ** 2).sum())

@@ -4,9 +4,11 @@ A reader sees either the earlier or the new file, never a partial one; after a f
 intact.
 """
 
+import csv
 import os
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
 from contextlib import suppress
+from io import StringIO
 from pathlib import Path
 from typing import BinaryIO
 
@@ -22,6 +24,19 @@ def write(path: Path, content: str | bytes | Iterable[bytes]) -> None:
     """
     parts = [content.encode() if isinstance(content, str) else content] if isinstance(content, str | bytes) else content
     through(path, lambda file: file.writelines(parts))
+
+
+def write_csv(path: Path, head: Sequence[str], rows: Iterable[Sequence[object]]) -> None:
+    """Write a table as comma-separated values.
+
+    Raises:
+        OSError: as for ``write``.
+    """
+    text = StringIO(newline="")
+    writer = csv.writer(text, lineterminator="\n")
+    writer.writerow(head)
+    writer.writerows(rows)
+    write(path, text.getvalue())
 
 
 def through(path: Path, save: Callable[[BinaryIO], object]) -> None:

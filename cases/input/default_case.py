@@ -21,7 +21,6 @@ def default_case(
     *,
     rpm: bool,
     source: str,
-    title: str = "",
     modes: int = MODES,
     unused: Sequence[Unused] = (),
     file: BladeFile | None = None,
@@ -33,7 +32,6 @@ def default_case(
         speeds: rotor speeds, rad/s, ascending.
         rpm: whether reports give speeds in rpm and frequencies in Hz; otherwise both in rad/s.
         source: the files, and how they were read.
-        title: title of the report, one line.
         modes: number of modes compared.
         unused: non-zero quantities of the files that the blade does not use.
         file: the blade's file as read.
@@ -43,7 +41,7 @@ def default_case(
     typed = np.round(omega * 30 / np.pi, 9).tolist() if rpm else omega.tolist()
     text = CaseFile(
         name=name,
-        title=title or f"The blade {blade.name}",
+        title=f"The blade {blade.name}",
         description=f"The lowest {modes} modes, each to be confirmed within {100 * TARGET:g} %.",
         source=source,
         blade=FromFile(file=blade.name),

@@ -84,10 +84,8 @@ def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, moun
     blade = reading.mounted(Path(name)) if decks is None or any(at) else reading.blade
     if not at:
         raise CaseError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")
-    files = ", ".join(path.name for path in source.files)
-    about = (f"{source.format}: {files}", f"axes: {source.axes}", *source.notes)
     file = BladeFile(Path(name), reading.blade, source, mount)
-    return default_case(blade, at, rpm=rpm, source="; ".join(about), unused=source.unused, file=file)
+    return default_case(blade, at, rpm=rpm, source="; ".join(source.about), unused=source.unused, file=file)
 
 
 def _changed(case: Case | Subject, edits: Sequence[PropertyChange]) -> Case | Subject:

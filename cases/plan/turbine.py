@@ -97,13 +97,12 @@ class TurbineSubject(NotABlade):
 
     def setting(self) -> Setting:
         """See ``Subject``."""
-        files = ", ".join(path.name for path in self.source.files)
         return Setting(
             case=self.name,
             title=self.title or f"The turbine {self.turbine.name}",
             description=self.description
             or f"The lowest {self.modes} modes of the whole turbine, each to be confirmed within {100 * self.target:g} %.",
-            source="; ".join((f"{self.source.format}: {files}", f"axes: {self.source.axes}", *self.source.notes)),
+            source="; ".join(self.source.about),
             unit="rpm" if self.rpm else "rad_s",
             facts=self._facts(),
             groups=self.groups,

@@ -99,23 +99,7 @@ def entry(run: Run, commit: str, machine: str = "", date: datetime | None = None
         date=(date or datetime.now(UTC)).astimezone(UTC).isoformat(timespec="seconds"),
         machine=machine or this_machine(),
         versions=run.versions,
-        cells=tuple(
-            Point(
-                case=c.case,
-                code=c.code,
-                omega=c.omega,
-                mode=c.mode,
-                family=c.family,
-                value=c.value,
-                difference=c.difference,
-                uncertainty=c.uncertainty,
-                verdict=c.verdict,
-                target=c.target,
-                quantity=c.quantity,
-                where=c.where,
-            )
-            for c in run.cells
-        ),
+        cells=tuple(Point(*(getattr(cell, name) for name in Point.__struct_fields__)) for cell in run.cells),
         controls=tuple(
             Detection(c.control, c.case, c.omega, c.detected_by) for c in run.controls if c.detected_by or c.missed
         ),

@@ -73,7 +73,7 @@ def _lines(run: Run) -> Iterator[dict[str, Any]]:
 
 
 def gaps(run: Run) -> str:
-    """One sentence on planned cells that are missing; empty if modes_at are none."""
+    """One sentence on planned cells that are missing; empty if there are none."""
     modes_at: dict[tuple[str, str], dict[float, list[int]]] = {}
     for cell in run.cells:
         modes_at.setdefault((cell.case, cell.code), {}).setdefault(cell.omega, []).append(cell.mode)

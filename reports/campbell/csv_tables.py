@@ -1,8 +1,6 @@
 """Writes a Campbell diagram as CSV, in SI units."""
 
-import csv
 from collections.abc import Iterable, Sequence
-from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -98,13 +96,6 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             met,
         ),
     }
-    out = []
     for name, (heads, rows) in files.items():
-        path = folder / name
-        text = StringIO(newline="")
-        writer = csv.writer(text, lineterminator="\n")
-        writer.writerow(heads)
-        writer.writerows(rows)
-        atomic.write(path, text.getvalue())
-        out.append(path)
-    return tuple(out)
+        atomic.write_csv(folder / name, heads, rows)
+    return tuple(folder / name for name in files)

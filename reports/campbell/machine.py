@@ -1,8 +1,6 @@
 """Tables, figure and page of a whole turbine's Campbell diagram."""
 
-import csv
-from collections.abc import Sequence
-from io import StringIO
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -18,8 +16,6 @@ from .cover import InputOrigin
 from .tables import TOO_NEAR, Sheet, markdown
 
 PAGE = "campbell.md"
-
-DPI = 180
 
 UNSTABLE = 1e-5
 """Growth rate, as a fraction of the frequency, above which a mode is unstable."""
@@ -177,14 +173,9 @@ def write(
     """
     folder.mkdir(parents=True, exist_ok=True)
     name = diagram.turbine.name
-    figure = draw(diagram, units, f"{name}: natural frequencies versus rotor speed")
-    vector, raster, table = folder / "campbell.svg", folder / "campbell.png", folder / "campbell.csv"
-    save(figure, vector)
-    with plot_style():
-        atomic.through(
-            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
-        )
-    atomic.write(table, _csv(diagram))
+    vector, raster = save(draw(diagram, units, f"{name}: natural frequencies versus rotor speed"), folder / "campbell")
+    table = folder / "campbell.csv"
+    atomic.write_csv(table, CSV, _rows(diagram))
     parts = [
         f"# Campbell diagram of {name}\n",
         *[f"{note}.\n" for note in notes],
@@ -199,25 +190,17 @@ def write(
     return page, vector, raster, table
 
 
-def _csv(diagram: MachineDiagram) -> str:
+CSV = (
+    *("omega_rad_s", "rotor_speed_rpm", "mode", "name", "frequency_rad_s", "frequency_hz"),
+    *("relative_uncertainty", "confidence"),
+)
+"""Columns of ``campbell.csv``."""
+
+
+def _rows(diagram: MachineDiagram) -> Iterator[tuple[str, ...]]:
     """One row per mode and speed, in SI units."""
-    out = StringIO()
-    writer = csv.writer(out, lineterminator="\n")
-    writer.writerow(
-        (
-            "omega_rad_s",
-            "rotor_speed_rpm",
-            "mode",
-            "name",
-            "frequency_rad_s",
-            "frequency_hz",
-            "relative_uncertainty",
-            "confidence",
-        )
-    )
     for k, omega in enumerate(diagram.omega.tolist()):
         for line in diagram.lines:
             f = float(line.frequencies[k])
             numbers = f"{f / (2 * np.pi):.9g}", f"{line.uncertainty:.6g}", f"{line.confidence[k]:.6f}"
-            writer.writerow((repr(omega), f"{omega * 30 / np.pi:.9g}", line.name, line.names[k], repr(f), *numbers))
-    return out.getvalue()
+            yield repr(omega), f"{omega * 30 / np.pi:.9g}", line.name, line.names[k], repr(f), *numbers

@@ -4,14 +4,13 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
-from matplotlib.figure import Figure
 
 from ...cases.campbell.diagram import Campbell
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.plan.user_results import UserResults
 from ...cases.writers.elastodyn_shapes import as_it_is, polynomials
-from ..shared.style import plot_style, save
+from ..shared.style import save
 from ..shared.units import Units
 from . import cover, csv_tables, encounters, shapes, span
 from . import figure as figures
@@ -20,8 +19,6 @@ from .confirmation import TITLE as CONFIRMATION
 from .cover import UNKNOWN, InputOrigin
 
 PAGE = "campbell.md"
-
-DPI = 180
 
 NOT_VERIFIED = f"## {CONFIRMATION}\n\nNone: no other code was run (`--verify`).\n"
 
@@ -59,7 +56,7 @@ def write(
     close = encounters.draw(diagram, units, f"{name}: modes that come close")
     if close:
         drawn["encounters"] = close
-    written = [path for stem, figure in drawn.items() for path in _figure(figure, folder / stem)]
+    written = [path for stem, figure in drawn.items() for path in save(figure, folder / stem)]
     written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
     atomic.write(page, _page(diagram, k, units, command, origin, extra))
@@ -75,16 +72,6 @@ def shapes_at(diagram: Campbell) -> int:
     target = request.operating[1] if request.operating else omega[-1]
     asked = np.flatnonzero(diagram.tracks.asked)
     return int(asked[np.abs(omega[asked] - target).argmin()])
-
-
-def _figure(figure: Figure, stem: Path) -> tuple[Path, Path]:
-    vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
-    save(figure, vector)
-    with plot_style():
-        atomic.through(
-            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
-        )
-    return vector, raster
 
 
 def _page(

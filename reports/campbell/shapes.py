@@ -1,8 +1,6 @@
 """Mode shapes of a Campbell diagram: figures, polynomial coefficients, and CSV."""
 
-import csv
 from collections.abc import Sequence
-from io import StringIO
 from pathlib import Path
 
 import numpy as np
@@ -190,15 +188,14 @@ def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
     order, shapes = scaled(diagram, k)
     path = folder / "shapes.csv"
     parts = [f"{what}_{part}" for what in ("axial", "edge", "flap", "torsion") for part in ("re", "im")]
-    text = StringIO(newline="")
-    writer = csv.writer(text, lineterminator="\n")
-    writer.writerow(["name", "frequency_rad_s", "relative_uncertainty", "omega_rad_s", "fraction", "span_m", *parts])
+    head = ["name", "frequency_rad_s", "relative_uncertainty", "omega_rad_s", "fraction", "span_m", *parts]
+    rows: list[list[object]] = []
     for t, shape in zip(order, shapes, strict=True):
         sure = f"{diagram.tracks.uncertainty[k, t]:.6g}"
         omega = float(diagram.tracks.omega[k])
         about = (diagram.labels.at(t, omega), float(diagram.tracks.frequencies[k, t]), sure, omega)
         for x, motion in zip(STATIONS, shape, strict=True):
             numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
-            writer.writerow([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
-    atomic.write(path, text.getvalue())
+            rows.append([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+    atomic.write_csv(path, head, rows)
     return path

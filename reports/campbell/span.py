@@ -7,10 +7,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import NDArray
 
-from ...cases.input import atomic
 from ...cases.input.properties import SectionProperties, sections
 from ...core.blade import Blade
-from ..shared.style import COLOURS, MUTED, WIDTH, decades, plot_style, power
+from ..shared.style import COLOURS, MUTED, WIDTH, decades, plot_style, power, save
 
 Array = NDArray[np.float64]
 Lines = list[tuple[str, Array]]
@@ -95,11 +94,6 @@ def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
         axes.legend(loc="best", fontsize=8)
 
 
-def write(blade: Blade, folder: Path) -> list[Path]:
-    """Write ``span.svg`` and ``span.png`` and return their paths; the same blade gives the same bytes."""
-    figure = draw(blade)
-    paths = [folder / "span.svg", folder / "span.png"]
-    with plot_style():
-        atomic.through(paths[0], lambda file: figure.savefig(file, format="svg", metadata={"Date": None}))
-        atomic.through(paths[1], lambda file: figure.savefig(file, format="png", dpi=150, metadata={"Software": None}))
-    return paths
+def write(blade: Blade, folder: Path) -> tuple[Path, Path]:
+    """Write ``span.svg`` and ``span.png`` and return their paths."""
+    return save(draw(blade), folder / "span")

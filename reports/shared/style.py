@@ -135,13 +135,22 @@ def svg(figure: "Figure") -> str:
     return compact(out.getvalue())
 
 
-def save(figure: "Figure", path: Path) -> None:
-    """Write the figure's SVG.
+DPI = 180
+
+
+def save(figure: "Figure", stem: Path) -> tuple[Path, Path]:
+    """Write the figure as SVG and as PNG, and return their paths; the same figure gives the same bytes.
 
     Raises:
-        OSError: if the file cannot be written.
+        OSError: if a file cannot be written.
     """
-    atomic.write(path, svg(figure))
+    vector, raster = stem.with_suffix(".svg"), stem.with_suffix(".png")
+    atomic.write(vector, svg(figure))
+    with plot_style():
+        atomic.through(
+            raster, lambda file: figure.savefig(file, format="png", dpi=DPI, metadata={"Software": "southwell"})
+        )
+    return vector, raster
 
 
 def spread(targets: Sequence[float], gap: float) -> list[float]:

@@ -63,6 +63,12 @@ class Source:
     notes: tuple[str, ...] = ()
     unused: tuple[Unused, ...] = ()
 
+    @property
+    def about(self) -> tuple[str, ...]:
+        """The format with the names of the files, the axes, and the notes, one line each."""
+        names = ", ".join(path.name for path in self.files)
+        return (f"{self.format}: {names}", f"axes: {self.axes}", *self.notes)
+
 
 @dataclass(frozen=True)
 class Reading:

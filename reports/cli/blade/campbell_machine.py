@@ -69,13 +69,10 @@ def run(
     speeds, units = given
     settings = MachineRequest(speeds, request.modes, request.per_rev, request.operating, request.margin)
     diagram = machine_diagram(read.turbine, settings, at=units.at)
-    shown = ", ".join(file.name for file in read.source.files)
     ground = "on rigid ground" if read.turbine.support.rigid else "on springs"
     about = (
         f"{path.name}: the whole turbine {ground}: tower, nacelle, drivetrain, hub and {read.turbine.blades} blades",
-        f"{read.source.format}: {shown}",
-        f"axes: {read.source.axes}",
-        *read.source.notes,
+        *read.source.about,
     )
     console = output()
     console.print(about[0], style="bold", markup=False, soft_wrap=True)

@@ -82,11 +82,10 @@ def subjects(name: str, mount: Mount, rotating: bool = True) -> list[Subject]:
     """
     if is_blade_file(name):
         reading = readers.reading(Path(name), mount)
-        files = ", ".join(path.name for path in reading.source.files)
-        about = (f"{reading.source.format}: {files}", f"axes: {reading.source.axes}", *reading.source.notes)
+        source = reading.source
         speeds = () if reading.speed is None else (reading.speed,)
         blade = reading.mounted(Path(name)) if rotating else reading.blade
-        return [Subject(blade, speeds, RPM, about, reading.source.notes, reading.source.unused, reading.source.files)]
+        return [Subject(blade, speeds, RPM, source.about, source.notes, source.unused, source.files)]
     case = select(name)
     if mount != Mount():
         raise CaseError(f"{name}: a case defines how its blade is mounted: leave out --main, --length and the like")

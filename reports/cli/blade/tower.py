@@ -47,8 +47,7 @@ def run(name: str, modes: int, json: bool, **given: bool) -> None:
         return
     console = output()
     console.print(tables.terminal(_sheet(tower.beam.name, solved), console.width))
-    files = ", ".join(file.name for file in source.files)
-    for line in (f"{source.format}: {files}", f"axes: {source.axes}", *source.notes):
+    for line in source.about:
         console.print(line, style="dim", markup=False)
     not_used.show(source.unused, console)
 
