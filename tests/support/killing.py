@@ -81,7 +81,7 @@ def ended(child: subprocess.Popen[str]) -> tuple[int, str, str]:
 def kill(child: subprocess.Popen[str], when: Callable[[], bool]) -> bool:
     """Kill the main process, and it alone, as soon as ``when`` says; whether it was still running."""
     while child.poll() is None and not when():
-        sleep(0.002)
+        sleep(0.02)
     alive = child.poll() is None
     if alive:
         os.kill(child.pid, signal.SIGKILL)
