@@ -13,6 +13,8 @@ from typing import cast
 
 import numpy as np
 import scipy.linalg
+import scipy.sparse
+import scipy.sparse.linalg
 from numpy.typing import NDArray
 
 from ..threads import one_thread
@@ -28,6 +30,9 @@ ACCURACY = 1e-11
 
 MAX_SIZE = 4000
 """Largest number of unknowns of the eigenproblem."""
+
+MAX_SPARSE = 20_000
+"""Largest number of unknowns of Newton's method, whose equations are sparse."""
 
 TAIL = 1e-5
 """Relative size of the harmonics that Newton's method leaves out at first."""
@@ -100,14 +105,16 @@ def refined(
     size = np.abs(shape * np.sqrt(np.diagonal(system.mean[0]))).max(1)
     H = max(2, *(np.abs(order[size > TAIL * size.max()])).tolist())
     previous, change = None, np.inf
-    while n * (2 * H + 1) <= MAX_SIZE and top >= H:
+    p: Complex | None = None
+    while n * (2 * H + 1) <= MAX_SPARSE and top >= H:
         about = slice(top - H, top + H + 1)
-        exponent, p = _newton(system, value, shape[about], kept[about])
+        guess = shape[about] if p is None else np.pad(p, ((H - len(p) // 2,) * 2, (0, 0)))
+        value, p = _newton(system, value, guess, kept[about])
         if previous is not None:
-            change = abs(exponent - previous)
+            change = abs(value - previous)
             if change <= accuracy * abs(system.omega):
-                return exponent, p, change
-        previous, H = exponent, H + max(system.harmonics, 1)
+                return value, p, change
+        previous, H = value, H + max(system.harmonics, 1)
     raise PeriodicError(
         f"Hill: an exponent changes by {change / abs(system.omega):.1e} Ω at {H} harmonics: give higher speeds"
     )
@@ -116,23 +123,47 @@ def refined(
 def _newton(system: Periodic, s: complex, shape: Complex, kept: NDArray[np.bool_]) -> tuple[complex, Complex]:
     """A solution (s, p) of Hill's equations with the ``kept`` harmonics; p's component along the first guess remains."""
     H, n = len(shape) // 2, shape.shape[1]
-    keep = np.flatnonzero(kept)
-    M, C, K = (_toeplitz(part, H)[np.ix_(keep, keep)] for part in (system.M, system.C, system.K))
-    D = np.repeat(1j * np.arange(-H, H + 1) * system.omega, n)[keep]
-    p = shape.ravel()[keep] / np.linalg.norm(shape.ravel()[keep])
-    bordered = np.zeros((len(keep) + 1, len(keep) + 1), np.complex128)
-    bordered[-1, :-1] = p.conj()
+    rows, columns, (M, C, K) = _sparse(system, kept)
+    D = np.repeat(1j * np.arange(-H, H + 1) * system.omega, n)[kept.ravel()]
+    p = shape[kept] / np.linalg.norm(shape[kept])
+    size, along = len(p), p.conj()
+    every, last = np.arange(size), np.full(size, size)
+    at = np.concatenate([rows, every, last]), np.concatenate([columns, last, every])
     for _ in range(MAX_STEPS):
-        rate = s + D
-        bordered[:-1, :-1] = M * rate**2 + C * rate + K
-        bordered[:-1, -1] = 2.0 * (M @ (rate * p)) + C @ p
-        step = np.linalg.solve(bordered, np.append(-bordered[:-1, :-1] @ p, 0.0))
+        rate = (s + D)[columns]
+        equations = scipy.sparse.csr_array((M * rate**2 + C * rate + K, (rows, columns)), (size, size))
+        slope = scipy.sparse.csr_array((2.0 * M * rate + C, (rows, columns)), (size, size)) @ p
+        bordered = scipy.sparse.csc_array((np.concatenate([M * rate**2 + C * rate + K, slope, along]), at))
+        try:
+            step = scipy.sparse.linalg.splu(bordered).solve(np.append(-(equations @ p), 0.0))
+        except RuntimeError:  # singular
+            break
         p, s = p + step[:-1], s + complex(step[-1])
         if abs(step[-1]) <= 100.0 * _EPS * max(abs(s), abs(system.omega) * H):
-            out = np.zeros(shape.size, np.complex128)
-            out[keep] = p
-            return s, out.reshape(shape.shape)
+            out = np.zeros(shape.shape, np.complex128)
+            out[kept] = p
+            return s, out
     raise PeriodicError(f"Hill: Newton's method does not converge near {abs(s):.4g} rad/s")
+
+
+def _sparse(
+    system: Periodic, kept: NDArray[np.bool_]
+) -> tuple[NDArray[np.intp], NDArray[np.intp], tuple[Complex, Complex, Complex]]:
+    """Rows, columns and values of the blocks M_{j−k}, C_{j−k} and K_{j−k} over the ``kept`` harmonics (2H + 1, n)."""
+    n, top = kept.shape[1], system.harmonics
+    number = np.where(kept, np.cumsum(kept).reshape(kept.shape) - 1, -1).ravel()
+    rows, columns, values = [], [], []
+    for h in range(-top, top + 1):
+        blocks = np.stack([part[top + h] for part in (system.M, system.C, system.K)])
+        r, c = np.nonzero(blocks.any(0))
+        j = np.arange(max(0, h), min(len(kept), len(kept) + h))[:, None]
+        row, column = number[n * j + r], number[n * (j - h) + c]
+        used = (row >= 0) & (column >= 0)
+        rows.append(row[used])
+        columns.append(column[used])
+        values.append(blocks[:, r, c][:, np.nonzero(used)[1]])
+    M, C, K = np.concatenate(values, axis=1)
+    return np.concatenate(rows), np.concatenate(columns), (M, C, K)
 
 
 def _centred(system: Periodic, H: int) -> tuple[Complex, Complex, float]:

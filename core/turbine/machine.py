@@ -27,7 +27,7 @@ Array = NDArray[np.float64]
 class Resolution:
     """How finely a turbine is modelled: elements and modes of tower and blade, and motions of two blades on a tower.
 
-    Of the latter, as many are used as modes are computed, and ``periodic_motions`` more.
+    Floquet's method uses as many of the latter as modes are computed, and ``periodic_motions`` more.
     """
 
     tower_elements: int = 12

@@ -1,8 +1,9 @@
 """Modes of a turbine of two blades, whose equations are periodic, by Floquet's and Hill's methods.
 
 A mode moves at the frequencies ω + hΩ, those of the tower in the ground's frame and those of the blades in the rotor's. The
-lowest modes are those of the lowest frequencies with the largest participation (``rotor.exponents``). The equations are
-restricted to the lowest motions of their mean over the azimuth; what is left out shows as a change when motions are added.
+lowest modes are those of the lowest frequencies with the largest participation (``rotor.exponents``). Floquet's method solves
+the equations restricted to the lowest motions of their mean over the azimuth, and Hill's method confirms its exponents. From
+there, Newton's method on Hill's equations with all motions leads to the modes.
 Half a revolution later they are the same, with the signs of the blades' difference and of the teeter angle reversed.
 """
 
@@ -32,6 +33,15 @@ ACCURACY = 1e-7
 EQUAL = 1e-6
 """Relative difference below which two participations are equal."""
 
+SAME = 0.5
+"""Part of a mode with all motions that is the mode of the lowest motions; with a smaller one, more motions are needed."""
+
+MORE_MOTIONS = 4
+"""Motions that are added at a time where all at once lead to another mode."""
+
+MORE_HARMONICS = 12
+"""Harmonics on both sides that a mode of all motions can have and that of the lowest ones has not."""
+
 
 @dataclass(frozen=True)
 class PeriodicModes:
@@ -54,26 +64,87 @@ def periodic_modes(made: Machine, omega: float, count: int) -> tuple[Assembled, 
         SteadyStateError: the blades have no steady state.
     """
     a, system = periodic(made, omega)
-    free = made.turbine.drivetrain.free
     with one_thread():
-        held = _held(a, system) if free else system
+        held = _held(a, system) if made.turbine.drivetrain.free else system
         signs = np.ones(len(a.M))
         signs[[*a.teeter, *a.blades[1]]] = -1.0
-        X, half_turn = _lowest(held, signs, count + made.resolution.periodic_motions)
-        M, C, K = (X.T @ part @ X for part in (held.M, held.C, held.K))
-        reduced = Periodic(omega, held.names[: X.shape[1]], M, C, K)
-        exponents = floquet(reduced, half_turn, ACCURACY)
-        largest = _largest(exponents)
-        frequencies = np.take_along_axis(exponents.candidates, largest[None], 0)[0]
-        order = np.argsort(frequencies)[len(frequencies) // 2 :]  # of two conjugates, that with a frequency ≥ 0
-        if free:
-            order = np.delete(order, np.abs(exponents.values[order]).argmin())
-        order = order[:count]
-        confirmed = [_confirmed(reduced, half_turn, exponents, int(j), int(largest[j])) for j in order]
-    return a, PeriodicModes(
-        values=np.array([value for value, _ in confirmed]),
-        harmonics=tuple(p @ X.T for _, p in confirmed),
-    )
+        motions = _motions(held, signs)
+        used = count + made.resolution.periodic_motions
+        while (solved := _lowest(held, signs, motions, used, count, made.turbine.drivetrain.free)) is None:
+            if used >= len(signs):
+                raise PeriodicError(
+                    "exponents: Newton's method on Hill's equations does not lead to as many modes; give other speeds"
+                )
+            used += used // 2
+    return a, PeriodicModes(values=np.array([value for value, _ in solved]), harmonics=tuple(p for _, p in solved))
+
+
+def _lowest(
+    system: Periodic, signs: Array, motions: tuple[Array, Array], used: int, count: int, free: bool
+) -> list[tuple[complex, Complex]] | None:
+    """Values and harmonics of the ``count`` lowest modes, by way of those of the ``used`` lowest motions.
+
+    None if these do not lead to as many modes, so that more motions are needed.
+    """
+    X, half_turn = motions
+    reduced = _restricted(system, X[:, :used])
+    exponents = floquet(reduced, half_turn[:used], ACCURACY)
+    largest = _largest(exponents)
+    frequencies = np.take_along_axis(exponents.candidates, largest[None], 0)[0]
+    order = np.argsort(frequencies)[len(frequencies) // 2 :]  # of two conjugates, that with a frequency ≥ 0
+    if free:
+        order = np.delete(order, np.abs(exponents.values[order]).argmin())
+    out: list[tuple[complex, Complex]] = []
+    for j in order[:count].tolist():
+        index = int(largest[j])
+        parity = (-1.0) ** (index - len(exponents.shapes) // 2)
+        mode = _confirmed(reduced, half_turn[:used], exponents, j, index)
+        full = _led(system, parity * signs, mode[0], mode[1] @ X[:, :used].T) or _followed(
+            system, parity, signs, motions, mode
+        )
+        if full is None:
+            return None
+        if any(abs(s - full[0]) <= 10.0 * ACCURACY * abs(system.omega) and _alike(p, full[1]) > SAME for s, p in out):
+            return None
+        out.append(full)
+    return out
+
+
+def _led(system: Periodic, half_turn: Array, value: complex, harmonics: Complex) -> tuple[complex, Complex] | None:
+    """The mode of the system that a mode of fewer motions leads to; None if it is another one."""
+    guess = np.pad(harmonics, ((MORE_HARMONICS,) * 2, (0, 0)))
+    try:
+        exponent, p, _ = hill.refined(system, value, guess, ACCURACY, half_turn)
+    except PeriodicError:
+        return None
+    return (exponent, p) if _alike(p, guess) > SAME else None
+
+
+def _followed(
+    system: Periodic, parity: float, signs: Array, motions: tuple[Array, Array], mode: tuple[complex, Complex]
+) -> tuple[complex, Complex] | None:
+    """``_led`` by way of modes with a few motions more at a time."""
+    X, half_turn = motions
+    value, p = mode
+    for size in range(p.shape[1] + MORE_MOTIONS, len(X), MORE_MOTIONS):
+        wider = np.pad(p, ((0, 0), (0, size - p.shape[1])))
+        if (led := _led(_restricted(system, X[:, :size]), parity * half_turn[:size], value, wider)) is None:
+            return None
+        value, p = led
+    return _led(system, parity * signs, value, p @ X[:, : p.shape[1]].T)
+
+
+def _restricted(system: Periodic, X: Array) -> Periodic:
+    """The system restricted to the motions X (n, k)."""
+    M, C, K = (X.T @ part @ X for part in (system.M, system.C, system.K))
+    return Periodic(system.omega, system.names[: X.shape[1]], M, C, K)
+
+
+def _alike(p: Complex, q: Complex) -> float:
+    """Modal assurance criterion of motions by their harmonics (2H + 1, n)."""
+    H = max(len(p), len(q)) // 2
+    x, y = (np.pad(z, ((H - len(z) // 2,) * 2, (0, 0))).ravel() for z in (p, q))
+    return float(abs(np.vdot(x, y)) ** 2 / (np.vdot(x, x) * np.vdot(y, y)).real)
 
 
 def _confirmed(
@@ -108,8 +179,8 @@ def _held(a: Assembled, system: Periodic) -> Periodic:
     return replace(system, K=K)
 
 
-def _lowest(system: Periodic, signs: Array, count: int) -> tuple[Array, Array]:
-    """(n, k) the lowest motions of the mean over the azimuth, without gyroscopic forces, and the sign (k,) of each."""
+def _motions(system: Periodic, signs: Array) -> tuple[Array, Array]:
+    """(n, n) motions of the mean over the azimuth, without gyroscopic forces, the lowest first, and the sign (n,) of each."""
     M, _, K = system.mean
     squares, motions, of_motions = [], [], []
     for sign in (1.0, -1.0):
@@ -122,7 +193,7 @@ def _lowest(system: Periodic, signs: Array, count: int) -> tuple[Array, Array]:
         squares.append(values)
         motions.append(X)
         of_motions.append(np.full(len(part), sign))
-    order = np.argsort(np.concatenate(squares))[:count]
+    order = np.argsort(np.concatenate(squares))
     return np.concatenate(motions, axis=1)[:, order], np.concatenate(of_motions)[order]
 
 

@@ -4,7 +4,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-import scipy.linalg
 
 from southwell import multibody as mb
 from southwell.core.rotor.orbit import orbit_of
@@ -74,25 +73,21 @@ def balanced(drivetrain: Drivetrain) -> tuple[Turbine, Turbine]:
 
 @pytest.mark.parametrize("drivetrain", [Drivetrain(), Drivetrain(2e6, 0.3, 20.0, True)], ids=["locked", "free"])
 def test_a_balanced_rotor_of_two_stiff_blades_is_isotropic(drivetrain: Drivetrain) -> None:
-    """As one of three, whose equations are constant, restricted to as many motions."""
+    """As one of three, whose equations are constant."""
     two, three = balanced(drivetrain)
-    found = turbine_modes(machine(two, replace(SMALL, periodic_motions=3)), OMEGA, 4)
+    modes = turbine_modes(machine(two, replace(SMALL, periodic_motions=3)), OMEGA, 4)
+    exact = turbine_modes(machine(three, SMALL), OMEGA, 4)
+    np.testing.assert_allclose(modes.frequencies, exact.frequencies, rtol=2e-7)  # rounding of stiff blades
+    assert modes.names == exact.names
     a = assemble(machine(three, SMALL), OMEGA)
-    X = scipy.linalg.eigh(0.5 * (a.K + a.K.T), a.M)[1][:, :7]
-    exact = eigen.damped(*(X.T @ part @ X for part in (a.M, a.C, a.K))).frequencies
-    exact = exact[exact > 1e-3][:4]
-    np.testing.assert_allclose(found.frequencies, exact, rtol=1e-7)
-    whole = turbine_modes(machine(three, SMALL), OMEGA, 4)
-    np.testing.assert_allclose(found.frequencies, whole.frequencies, rtol=2e-3)
-    assert found.names == whole.names
     without = eigen.damped(a.M, 0.0 * a.C, a.K).frequencies
-    assert np.abs(exact / without[without > 1e-3][:4] - 1.0).max() > 1e-2  # the rotor is a gyroscope
+    assert np.abs(exact.frequencies / without[without > 1e-3][:4] - 1.0).max() > 1e-2  # the rotor is a gyroscope
 
 
-def test_more_motions_change_little() -> None:
+def test_the_motions_used_at_first_do_not_matter() -> None:
     turbine = replace(small(4e5, blades=2), teeter=Teeter(0.3))
-    few, many = (turbine_modes(machine(turbine, replace(SMALL, periodic_motions=k)), OMEGA, 4) for k in (6, 12))
-    np.testing.assert_allclose(few.frequencies, many.frequencies, rtol=2e-4)
+    few, many = (turbine_modes(machine(turbine, replace(SMALL, periodic_motions=k)), OMEGA, 4) for k in (3, 12))
+    np.testing.assert_allclose(few.frequencies, many.frequencies, rtol=1e-9)
     assert few.names[:3] == ("1st tower side-side", "1st tower fore-aft", "teeter")
     assert (few.confidence > 0.5).all()
 
