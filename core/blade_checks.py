@@ -105,7 +105,7 @@ def _stations(blade: "Blade") -> None:
         k = int(np.argmax(np.diff(blade.stations) <= 0)) + 1
         raise BladeError(
             f"stations: number {k} ({blade.stations[k]:g} m) is not greater than the one before it "
-            f"({blade.stations[k - 1]:g} m): sort them and drop duplicates"
+            f"({blade.stations[k - 1]:g} m): sort them and remove duplicates"
         )
     if not MIN_LENGTH <= blade.stations[-1] <= MAX_LENGTH:
         raise BladeError(
@@ -135,7 +135,7 @@ def _kinks(blade: "Blade") -> None:
                 "add one there, or correct the kink"
             )
     if (np.diff(blade.kinks) <= 0).any():
-        raise BladeError(f"kinks: {list(blade.kinks)}: not ascending: sort them and drop duplicates")
+        raise BladeError(f"kinks: {list(blade.kinks)}: not ascending: sort them and remove duplicates")
 
 
 def _curve(blade: "Blade") -> None:

@@ -192,7 +192,7 @@ def _on_speeds(request: CampbellRequest) -> CampbellRequest:
 def _check(request: CampbellRequest) -> None:
     speeds = request.speeds
     if len(speeds) < 2:
-        raise CaseError(f"speeds: {len(speeds)} given: a diagram needs two at least; give a range first:last:step")
+        raise CaseError(f"speeds: {len(speeds)} given: a diagram needs at least two; give a range first:last:step")
     if request.operating:
         low, high = request.operating
         if not (speeds[0] <= low + ROUNDING * speeds[-1] and low <= high <= speeds[-1] * (1 + ROUNDING)):

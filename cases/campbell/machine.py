@@ -120,7 +120,7 @@ def machine_diagram(
     """
     omega = np.array(request.speeds)
     if len(omega) < 2:
-        raise CaseError(f"speeds: {len(omega)} given: a diagram needs two at least; give a range first:last:step")
+        raise CaseError(f"speeds: {len(omega)} given: a diagram needs at least two; give a range first:last:step")
     if turbine.blades == 2 and not omega.all():
         raise CaseError(
             f"speeds: 0: the modes of two blades at rest depend on the azimuth; give speeds above 0, as in "

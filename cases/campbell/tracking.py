@@ -124,7 +124,7 @@ def track(
         ValueError: if ``speeds`` are not ascending.
     """
     if not len(speeds) or (np.diff(speeds) <= 0).any():
-        raise ValueError(f"speeds: {list(speeds)}: not ascending: sort them and drop duplicates")
+        raise ValueError(f"speeds: {list(speeds)}: not ascending: sort them and remove duplicates")
     smallest = smallest_step * float(np.diff(speeds).max(initial=0.0))
     points, links = [_solved(solve, speeds[0], weight)], []
     for omega in sorted({float(v) for v in (*speeds, *more)})[1:]:

@@ -106,7 +106,7 @@ def read(path: Path) -> Condensed:
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file: correct the path") from None
     except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: {error}: not written by `southwell condense`; condense again") from error
     sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "body_twist": 6}

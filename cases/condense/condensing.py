@@ -59,8 +59,8 @@ def _condense(path: Path) -> Condensation:
     spec = convert(data, CondenseFile, str(path))
     if spec.segments and len(spec.segments) != len(spec.sections) - 1:
         raise CaseError(
-            f"{path}: segments: {len(spec.segments)} for {len(spec.sections)} sections: one between each two: "
-            f"give {len(spec.sections) - 1}"
+            f"{path}: segments: {len(spec.segments)} for {len(spec.sections)} sections: give {len(spec.sections) - 1}, one "
+            "between each two sections"
         )
     if spec.segments and (spec.stiffness is not None or spec.mass is not None):
         raise CaseError(f"{path}: stiffness: given for the whole and for segments: give one model, or one per segment")
@@ -140,7 +140,7 @@ def _frames(path: Path, spec: CondenseFile) -> list[Array]:
         if np.linalg.norm(z) < TOLERANCE:
             field = "rotor" if along is None else f"sections[{k}].axis"
             raise CaseError(
-                f"{path}: {field}: along {'the span' if along is None else 'the rotor'}: they differ; correct it"
+                f"{path}: {field}: parallel to {'the span' if along is None else 'the rotor axis'}: give another direction"
             )
         z /= np.linalg.norm(z)
         out.append(sp.pose(np.column_stack([x, np.cross(z, x), z]), metres * np.asarray(point, float)))

@@ -101,7 +101,7 @@ def _load(folder: Path, spec: str | Matrix, quantity: str) -> Exported:
             f"{path}: no such file: paths are relative to the file that names them; correct the name"
         ) from None
     except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file") from error
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
 
 
 def _no_negative(where: str, matrix: Exported) -> None:
@@ -134,7 +134,7 @@ def _named(
 ) -> Exported:
     if len(matrix.nodes):
         if listed is not None:
-            raise CaseError(f"{path}: {field}freedoms: {matrix.name} names its own: remove freedoms")
+            raise CaseError(f"{path}: {field}freedoms: {matrix.name} names its own freedoms: remove this key")
         return matrix
     if listed is None:
         raise CaseError(
@@ -197,6 +197,6 @@ def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
         motion = f"{'translation along' if k < 3 else 'rotation about'} {'xyz'[k % 3]}"
         raise CaseError(
             f"{path}: {field}stiffness: {model.name} resists the {motion} of the whole as a rigid body ({residual[k]:.1e} of "
-            "the forces in it): supports in it, or wrong node positions (order, units)? export it unconstrained"
+            "the forces in it): export it without supports, and check the node positions (order, units)"
         )
     return float(residual.max())

@@ -81,7 +81,7 @@ class Diagnosis:
         if self.cause:
             alternatives = "".join(f"; or {described(cause.changes)}" for cause in self.ties)
             changes = f"{described(self.cause.changes)} ({self._remainder(self.cause)})"
-            return f"{first}as Southwell's own solver {changes}{alternatives}"
+            return f"{first}agrees with Southwell's own solver {changes}{alternatives}"
         hint = f"; {self.indication}" if self.indication else ""
         return f"{first}no known cause of {percent(self.largest)}{hint}"
 
@@ -91,7 +91,7 @@ class Diagnosis:
 
     def _remainder(self, cause: Cause) -> str:
         of = f" of {percent(self.largest)}" if cause.remains > 0.1 * self.largest else ""
-        return f"remains {percent(cause.remains)}{of}"
+        return f"{percent(cause.remains)}{of} remains"
 
 
 def diagnose(
@@ -225,7 +225,7 @@ def cause_lines(diagnosis: Diagnosis) -> tuple[str, ...]:
 def _cause(cause: Cause) -> str:
     explained = f"{100.0 * max(cause.explained, 0.0):.4g} %"
     chance = f"; by chance {cause.chance:.1g}" if cause.chance > 1e-6 else ""
-    return f"{described(cause.changes)}: explains {explained}, remains {percent(cause.remains)}{chance}"
+    return f"{described(cause.changes)}: explains {explained}, leaves {percent(cause.remains)}{chance}"
 
 
 def mode_lines(diagnosis: Diagnosis) -> tuple[str, ...]:

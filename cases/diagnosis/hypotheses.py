@@ -22,7 +22,7 @@ class Hypothesis:
     """One possible cause.
 
     Attributes:
-        name: completes "as Southwell's own solver …".
+        name: completes "agrees with Southwell's own solver …".
         change: the model of a program with this cause, from the model without it and from ``factor``.
         fitted: whether the size of the cause is unknown; it is a factor, fitted to the numbers.
     """

@@ -114,9 +114,9 @@ def inside(path: Path) -> None:
     within = any(file.is_relative_to(folder) for folder in (*allowed.folders, *_roots.get()))
     if not within and not any(_in_subfolder(file, tree) for tree in allowed.trees):
         raise CaseError(
-            f"{path}: outside {allowed.folders[0]}: a file may name files in its folder only, in a deck also those in "
-            "folders beside it: move it there, give --root FOLDER with all files of the deck, or give --allow-outside if you "
-            "trust the file that names it"
+            f"{path}: outside {allowed.folders[0]}: a file may name files in its folder only, or in the folders of its deck: "
+            "move it there, give --root FOLDER for a folder that holds the whole deck, or give --allow-outside if you trust "
+            "the file that names it"
         )
 
 
@@ -145,7 +145,7 @@ def text(path: Path, remedy: str = "correct the path", older: bool = False) -> s
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file: {remedy}") from None
     except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file that can") from error
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
     marked = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) and not raw.startswith(codecs.BOM_UTF32_LE)
     if b"\0" in raw and not marked:
         raise CaseError(
@@ -179,7 +179,7 @@ def table(path: Path, remedy: str) -> list[tuple[int, list[str]]]:
     lines = [(k, line.partition("#")[0]) for k, line in enumerate(text(path, remedy).splitlines(), 1)]
     lines = [(k, line) for k, line in lines if line.strip()]
     if not lines:
-        raise CaseError(f"{path}: only comments: give a header and rows")
+        raise CaseError(f"{path}: contains only comments: give a header and rows")
     header = lines[0][1]
     separator = next((mark for mark in ",;\t" if mark in header), ",")
     return [(k, _cells(f"{path}: line {k}", line, separator)) for k, line in lines]

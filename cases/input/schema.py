@@ -235,7 +235,7 @@ def speed_range(text: str) -> NDArray[np.float64]:
     if "," in text:
         listed = np.concatenate([speed_range(part) for part in text.split(",")])
         if (np.diff(listed) <= 0).any():
-            raise ValueError(f"{text!r}: not ascending: sort the speeds and drop duplicates")
+            raise ValueError(f"{text!r}: not ascending: sort the speeds and remove duplicates")
         return listed
     parts = text.split(":")
     try:
@@ -267,17 +267,17 @@ def rad_s(table: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.f
         raise CaseError(f"{path}: speeds: {listed} given: give exactly one of rad_s, rpm, gamma")
     ((unit, value),) = units.items()
     if unit == "gamma" and not dimensionless:
-        raise CaseError(f'{path}: speeds.gamma: it needs blade.kind = "dimensionless": give rad_s or rpm')
+        raise CaseError(f'{path}: speeds.gamma: requires blade.kind = "dimensionless": give rad_s or rpm')
     try:
         speeds = speed_range(value) if isinstance(value, str) else np.array(value, dtype=float)
     except ValueError as error:
         raise CaseError(f"{path}: speeds.{unit}: {error}") from error
     if not len(speeds):
-        raise CaseError(f"{path}: speeds.{unit}: empty: no speeds, nothing to solve; give at least one, 0 for rest")
+        raise CaseError(f"{path}: speeds.{unit}: empty: give at least one speed, 0 for rest")
     if speeds.max() > FASTEST:
         raise CaseError(
             f"{path}: speeds.{unit}: {speeds.max():g}: implausibly fast: check the unit, and give at most {FASTEST:g}"
         )
     if (np.diff(speeds) <= 0).any():
-        raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and drop duplicates")
+        raise CaseError(f"{path}: speeds.{unit}: {value}: not ascending: sort them and remove duplicates")
     return speeds * (np.pi / 30 if unit == "rpm" else 1.0)

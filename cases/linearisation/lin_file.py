@@ -91,7 +91,7 @@ def text(path: Path) -> str:
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file: correct the path") from None
     except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a file that can") from error
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
     if raw.startswith(b"\x1f\x8b"):
         try:
             with gzip.open(io.BytesIO(raw)) as compressed:
@@ -254,7 +254,7 @@ def _matrix(path: Path, lines: list[str], n: int) -> list[tuple[int, list[str]]]
                 "that run together, use a wider OutFmt"
             )
     if len(rows) < n:
-        raise CaseError(f"{path}: the file ends after {len(rows)} of {n} rows of A: give it whole")
+        raise CaseError(f"{path}: the file ends after {len(rows)} of {n} rows of A: give the whole file")
     return rows
 
 
@@ -276,8 +276,8 @@ def _numbers(path: Path, rows: list[tuple[int, list[str]]]) -> Array:
         if not np.isfinite(out[i]).all() or np.abs(out[i]).max() > 1e100:
             j = int(np.argmax(~np.isfinite(out[i]) | (np.abs(out[i]) > 1e100)))
             raise CaseError(
-                f"{path}: line {k}: A[{i + 1},{j + 1}]: {row[j][:20]}: not a finite number: did the linearisation fail? "
-                "find a steady operating point"
+                f"{path}: line {k}: A[{i + 1},{j + 1}]: {row[j][:20]}: not a finite number: the linearisation may have "
+                "failed: use a steady operating point"
             )
     return out
 

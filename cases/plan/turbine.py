@@ -76,7 +76,7 @@ class TurbineSubject(NotABlade):
     def __post_init__(self) -> None:
         if self.turbine.blades == 2:
             raise CaseError(
-                f"{self.path}: two blades: no other code here solves them on a tower; `southwell campbell` does, by Floquet's "
+                f"{self.path}: two blades: none of the codes solves them on a tower; `southwell campbell` does, by Floquet's "
                 "and Hill's methods, and --blade-only verifies one blade"
             )
 

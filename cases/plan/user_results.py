@@ -173,7 +173,8 @@ def _header(header: Sequence[str], where: str) -> _Columns:
         raise CaseError(message)
     if INPUTS in header and frequency not in MEASURED:
         raise CaseError(
-            f"{where}: column {INPUTS!r} is for measured frequencies: leave it out, or name theirs 'measured [Hz]'"
+            f"{where}: column {INPUTS!r} is for measured frequencies: leave it out, or name the column of "
+            "frequencies 'measured [Hz]'"
         )
     return _Columns(speed, frequency, sure[0] if sure else "")
 

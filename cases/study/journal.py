@@ -132,7 +132,9 @@ def _scan(file: BinaryIO, start: int, journal: StudyJournal) -> int:
             row = _row.decode(line)
             number = journal.header.number(row.blade, row.sample)
         except (ValueError, msgspec.DecodeError) as error:
-            raise CaseError(f"{journal.path}: line {k}: not a row of this study ({error}): damaged? {OTHER}") from None
+            raise CaseError(
+                f"{journal.path}: line {k}: not a row of this study ({error}): it may be damaged: {OTHER}"
+            ) from None
         follows = task is None or (task.blade, task.sample, task.rows_left - 1) == (
             row.blade,
             row.sample,

@@ -213,6 +213,6 @@ def alike(cell: Cell, effects: Sequence[FaultEffect]) -> str:
                 rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
                 if abs(rest) <= 0.1 * abs(cell.difference):
                     size = f"({percent(m.change)}; {unsigned(rest)} from it)"
-                    likeness = f"as Southwell's own solver with this fault: {fault_effect.fault} {size}"
+                    likeness = f"agrees with Southwell's own solver with this fault: {fault_effect.fault} {size}"
                     candidates.append((abs(rest), likeness))
     return min(candidates)[1] if candidates else ""

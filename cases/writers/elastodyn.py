@@ -51,9 +51,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
     }
     for feature, present in lacks.items():
         if present:
-            raise CaseError(
-                f"{path}: ElastoDyn cannot represent {feature}: write TOML or BeamDyn, or take it out first"
-            )
+            raise CaseError(f"{path}: ElastoDyn cannot represent {feature}: write TOML or BeamDyn, or remove it first")
     n = len(blade.stations)
     damping, pitch_axis = (_given(given, name, count) for name, count in zip(CARRIED, (3, n), strict=True))
     shapes = [shape.coefficients.tolist() for shape in polynomials(blade, omega)]

@@ -94,9 +94,9 @@ def run_in(path: Path) -> Run:
     except ValueError as error:
         raise CaseError(str(error)) from error
     if not run.cells and run.unfinished:
-        raise IncompleteError(f"{file}: incomplete: there are no cells in it: {CONTINUE}")
+        raise IncompleteError(f"{file}: incomplete: contains no results: {CONTINUE}")
     if not run.cells:
-        raise CaseError(f"{file}: no results in it: run `southwell verify`")
+        raise CaseError(f"{file}: contains no results: run `southwell verify`")
     return run
 
 

@@ -75,14 +75,14 @@ def command(
     run = run_in(folder)
     after = history.entry(run, str(folder))
     if commit and not against:
-        raise CaseError(f"--commit {commit}: no history: give its file by --against")
+        raise CaseError(f"--commit {commit}: no history is given: name its file with --against")
     before = earlier(against, commit) if against else nothing(after)
     if partial:
         before = within(before, after)
     if (count := misses(before)) and not failed_baseline:
         raise CaseError(
             f"--against {against}: the run {before.commit} has {count} failure{'s' * (count > 1)}: compare with a run that "
-            "passed, or accept them by --failed-baseline"
+            "passed, or accept them with --failed-baseline"
         )
     units = {s.case: BY_KEY[s.unit] for s in run.settings}
     missed = [c.control for c in run.controls if c.missed]
@@ -119,7 +119,7 @@ def earlier(path: Path, commit: str) -> Entry:
         return replace(history.entry(finished(path), str(path)), date="", machine="")
     entries = load(path).entries
     if not entries:
-        raise CaseError(f"--against {path}: no runs in it: add one by `southwell history add`")
+        raise CaseError(f"--against {path}: contains no runs: add one with `southwell history add`")
     chosen = [e for e in entries if e.commit.startswith(commit)]
     if not chosen:
         raise CaseError(

@@ -81,7 +81,7 @@ def load(file: Path) -> History:
         recorded = history.read(file)
     except OSError as error:
         raise CaseError(
-            f"{file}: cannot be read ({error.strerror}): give what `southwell history add` wrote"
+            f"{file}: cannot be read ({error.strerror}): give a file written by `southwell history add`"
         ) from error
     except ValueError as error:
         raise CaseError(str(error)) from error

@@ -87,7 +87,9 @@ def install(code: str, /) -> int:
         Name of the code; `southwell codes` lists the codes that need an isolated environment.
     """
     if code not in ENVIRONMENTS:
-        raise UsageError(f"code: {code!r}: no environment of its own: {nearest(code, list(ENVIRONMENTS))}")
+        raise UsageError(
+            f"code: {code!r}: not a code that needs an isolated environment: {nearest(code, list(ENVIRONMENTS))}"
+        )
     try:
         folder = isolated.install(ENVIRONMENTS[code])
     except isolated.EnvironmentMissingError as error:

@@ -107,5 +107,5 @@ def _multipliers(text: str) -> tuple[float, float, float]:
     except ValueError:
         raise CaseError(f"--multipliers: {text!r} is not mass,flap,edge, as in 1.04536,1,1") from None
     if not all(isfinite(v) and v > 0 for v in (mass, flap, edge)):
-        raise CaseError(f"--multipliers: {text!r}: they multiply: give positive numbers, as in 1.04536,1,1")
+        raise CaseError(f"--multipliers: {text!r}: not positive factors: give positive numbers, as in 1.04536,1,1")
     return mass, flap, edge

@@ -302,7 +302,7 @@ def _given(rpm: Given | None, omega: Given | None) -> tuple[Given, Units]:
         return rpm, RPM
     if omega is not None and rpm is None:
         return omega, RAD_S
-    raise CaseError("speeds: give rpm or omega, one of them, as in rpm='0:12:1'")
+    raise CaseError("speeds: give either rpm or omega, as in rpm='0:12:1'")
 
 
 def _speeds(rpm: Speeds | None, omega: Speeds | None) -> tuple[Array, Units]:

@@ -40,7 +40,7 @@ def read(path: Path) -> tuple[Tower, Source]:
             return hawc2_tower.read(path)
         if not bmodes_tower.matches_format(text):
             raise CaseError(
-                f"{path}: --tower: no tower of a format with one (BModes .bmi, HAWC2 .htc, windIO, Southwell's TOML); for "
-                "ElastoDyn give the tower's own file"
+                f"{path}: --tower: contains no tower in a supported format (BModes .bmi, HAWC2 .htc, windIO, Southwell's "
+                "TOML); for ElastoDyn, give the tower's own file"
             )
         return bmodes_tower.read(path)

@@ -211,7 +211,10 @@ def support(path: Path, key: str, data: SupportData, height: float) -> Support:
         clamped = [DIRECTIONS.index(name) for name in data.clamped]
         for k, name in zip(clamped, data.clamped, strict=True):
             if K[k].any() or K[:, k].any():
-                raise CaseError(f"{path}: {key}.clamped: {name}: its row of the stiffness is not zero; correct one")
+                raise CaseError(
+                    f"{path}: {key}.clamped: {name}: its row of the stiffness is not zero: make it zero, or do not clamp "
+                    "this coordinate"
+                )
         directions = np.flatnonzero(np.diagonal(in_axes(np.diag(np.isin(range(6), clamped).astype(float)), BEAMDYN)))
         base[directions, directions] = np.inf
     elif data.clamped:

@@ -62,7 +62,10 @@ def reading(path: Path, mount: Mount | None = None) -> Reading:
             ("offsets", mount.offsets, "ElastoDyn"),
         ):
             if setting is not None and blade_reading.source.format != format:
-                raise CaseError(f"{path}: {option}: {blade_reading.source.format} has none, {format} has: leave it out")
+                raise CaseError(
+                    f"{path}: {option}: {blade_reading.source.format} files have no such option, {format} files do: leave "
+                    "it out"
+                )
     blade = blade_reading.blade
     if not has_name(blade.name):
         raise CaseError(f"{path}: name: {blade.name[:MAX_NAME]!r}: a name is one line of at most {MAX_NAME} characters")

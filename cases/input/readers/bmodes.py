@@ -60,7 +60,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     entries = keys(main)
     if "beam_type" in entries and integer(main, entries, "beam_type") != 1:
         raise CaseError(
-            f"{main.at(entries['beam_type'][0])}: beam_type: not 1: a tower; give the file of a blade, or use `southwell modes`"
+            f"{main.at(entries['beam_type'][0])}: beam_type: not 1: this is the file of a tower: give the file of "
+            "a blade, or use `southwell modes`"
         )
     sections = section_table(main)
     text = sections.text

@@ -94,8 +94,8 @@ class Reading:
         """
         if "hub_radius" in self.unstated:
             raise CaseError(
-                f"{path}: hub_radius: not in the files read ({self.source.format}), and needed at speed: give the main file "
-                "that states it (--main), or --hub-radius and --precone (0 if there is none)"
+                f"{path}: hub_radius: not in the files read ({self.source.format}), but required at speed: give the main "
+                "file that states it (--main), or --hub-radius and --precone (0 if there is none)"
             )
         return self.blade
 

@@ -51,7 +51,9 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     mount = mount or Mount()
     if path.suffix.lower() == ".csv":
         if mount.length is None:
-            raise CaseError(f"{path}: length: stations are fractions of it: give --length and --hub-radius")
+            raise CaseError(
+                f"{path}: length: missing: stations are fractions of the length: give --length and --hub-radius"
+            )
         stations = Stations(file=path.name, length=mount.length)
         blade = stations.blade(path.stem, path.parent)
         source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight", *_rigid(blade)))
@@ -61,7 +63,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     text = convert(data, BladeFile, str(path))
     if isinstance(text.blade, Dimensionless):
         raise CaseError(
-            f"{path}: blade.kind: 'dimensionless': it has no metres or seconds: make it a case with gamma speeds"
+            f"{path}: blade.kind: 'dimensionless': has no metres and seconds: use it in a case with gamma speeds"
         )
     try:
         blade, unused_values = text.blade.read(text.name, path.parent)

@@ -193,7 +193,7 @@ def fractions(sections: Table, name: str) -> Array:
     ends[0], ends[-1] = eta[0] == 0, eta[-1] == 1
     sections.need(ends, name, eta, "stations are fractions of the length: begin at 0 and end at 1")
     rises = np.concatenate([[True], np.diff(eta) > ROUNDING])
-    sections.need(rises, name, eta, "not beyond the station before it: sort them and drop duplicates")
+    sections.need(rises, name, eta, "not beyond the previous station: sort them and remove duplicates")
     return eta
 
 

@@ -137,7 +137,7 @@ def _axis(layout: Layout) -> Axis:
     z[0] = 0.0
     if (flat := np.diff(z) <= MIN_SPACING * np.abs(z).max()).any():
         k = int(np.argmax(flat)) + 1
-        raise CaseError(f"{layout.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, drop duplicates")
+        raise CaseError(f"{layout.axis.get('z').at}: does not rise at grid {grid[k]:g}: sort it, remove duplicates")
     values = np.stack([x - x[0], y - y[0], twist * layout.degrees], axis=1)
     return measured(CubicSpline(z, values, bc_type="natural"), z)
 
@@ -160,7 +160,7 @@ def _grid(values_on_grid: Field) -> Array:
             raise CaseError(f"{field.item(k)}: {grid[k]:g}: fractions of the length: begin at 0 and end at 1")
     if (np.diff(grid) <= 0).any():
         k = int(np.argmax(np.diff(grid) <= 0)) + 1
-        raise CaseError(f"{field.item(k)}: {grid[k]:g}: not beyond the one before: sort them and drop duplicates")
+        raise CaseError(f"{field.item(k)}: {grid[k]:g}: not beyond the previous one: sort them and remove duplicates")
     return grid
 
 
@@ -219,7 +219,7 @@ def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
         if stiffness[:, i, i].any():
             continue
         if stiffness[:, i].any():
-            raise CaseError(f"{field.at}: {key} is not given but couplings with it are: add it")
+            raise CaseError(f"{field.at}: {key} is missing, although couplings with it are given: add it")
         stiffness[:, i, i] = 1.0
         zero_strains.append(strain)
     return stiffness, tuple(zero_strains)

@@ -76,7 +76,7 @@ class Field:
             CaseError: if it is a list or a mapping.
         """
         if not isinstance(self.node, yaml.ScalarNode):
-            raise CaseError(f"{self.at}: one word is needed: correct it")
+            raise CaseError(f"{self.at}: expected a single value: correct it")
         return str(self.node.value)
 
     def numbers(self) -> Array:
@@ -114,14 +114,14 @@ class Field:
 
     def _items(self) -> list[yaml.Node]:
         if not isinstance(self.node, yaml.SequenceNode):
-            raise CaseError(f"{self.at}: a list is needed: correct it")
+            raise CaseError(f"{self.at}: expected a list: correct it")
         return self.node.value
 
     def _keys(self) -> dict[str, yaml.Node]:
         if isinstance(self.node, yaml.ScalarNode) and self.node.tag == "!include":
-            raise CaseError(f"{self.at}: is in another file ({self.node.value}): put its text here")
+            raise CaseError(f"{self.at}: is in another file ({self.node.value}): insert its text here")
         if not isinstance(self.node, yaml.MappingNode):
-            raise CaseError(f"{self.at}: keys are needed: check the indentation")
+            raise CaseError(f"{self.at}: expected keys with values: check the indentation")
         return {str(key.value): value for key, value in self.node.value}
 
 
@@ -146,7 +146,7 @@ def fields(text: Text) -> Field:
     except yaml.YAMLError as error:
         raise CaseError(f"{text.path}: not YAML: {' '.join(str(error).split())}: correct it") from error
     if node is None:
-        raise CaseError(f"{text.path}: nothing but comments: give the blade's file")
+        raise CaseError(f"{text.path}: contains only comments: give the blade's file")
     return Field(text, "", cast(yaml.Node, node))
 
 

@@ -105,6 +105,7 @@ def operating(text: str, units: Units, speeds: Sequence[float]) -> tuple[float, 
     first, last = speeds[0] * units.speeds, speeds[-1] * units.speeds
     if low < first - 1e-9 * last or high > last * (1 + 1e-9):
         raise CaseError(
-            f"--operating: {text!r}: beyond the speeds, {first:g} to {last:g} {units.speed}: widen those, or correct it"
+            f"--operating: {text!r}: beyond the speeds, {first:g} to {last:g} {units.speed}: widen the speeds, or correct "
+            "the range"
         )
     return low / units.speeds, high / units.speeds

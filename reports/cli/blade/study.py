@@ -63,7 +63,7 @@ def command(
         Print mean, standard deviation and percentiles of every frequency over the samples.
     """
     if out.suffix not in (SUFFIX, parquet.SUFFIX):
-        raise UsageError(f"--out {out}: the name says neither JSON Lines nor Parquet: end it with .jsonl or .parquet")
+        raise UsageError(f"--out {out}: neither JSON Lines nor Parquet: end it with .jsonl or .parquet")
     count = cluster_workers(workers, scheduler)
     if out.suffix == parquet.SUFFIX:
         parquet.library(out)  # before the first answer

@@ -36,7 +36,7 @@ def run(name: str, modes: int, json: bool, **given: bool) -> None:
     """
     for option, used in given.items():
         if used:
-            raise UsageError(f"--{option.replace('_', '-')}: {name} is a tower, which does not turn: leave it out")
+            raise UsageError(f"--{option.replace('_', '-')}: {name} is a tower, which does not rotate: leave it out")
     tower, source = towers.read(Path(name))
     try:
         solved = tower_modes(tower, modes)

@@ -178,7 +178,7 @@ def test_an_operating_range_from_rest_and_one_of_a_single_speed() -> None:
 @pytest.mark.parametrize(
     ("changes", "phrase"),
     [
-        ({"speeds": (1.0,)}, "speeds: 1 given: a diagram needs two at least"),
+        ({"speeds": (1.0,)}, "speeds: 1 given: a diagram needs at least two"),
         ({"operating": (1.0, 4.5)}, "operating range: 1 to 4.5 rad/s is not within the speeds, 0 to 4 rad/s"),
         ({"speeds": (1.0, 3.0), "operating": (0.5, 2.0)}, "not within the speeds"),
     ],

@@ -32,7 +32,7 @@ def cells() -> list[Cell]:
 def test_a_failing_column_is_diagnosed_from_its_cells() -> None:
     diagnosis = diagnosed(BLADE, cells())
     assert diagnosis.known
-    assert diagnosis.sentence.startswith("as Southwell's own solver without hub radius (remains 0.000")
+    assert diagnosis.sentence.startswith("agrees with Southwell's own solver without hub radius (0.000")
     assert diagnosis.causes[0].startswith("without hub radius: explains 100 %")
     assert any(line.startswith("flapwise 1: at rest ") for line in diagnosis.modes)
 
@@ -52,12 +52,12 @@ def test_the_terminal_and_the_report_show_it() -> None:
         "beam",
         "code",
         True,
-        "as Southwell's own solver without hub radius (remains 0.0002 %)",
+        "agrees with Southwell's own solver without hub radius (0.0002 % remains)",
         ("a", "b"),
         ("flapwise 1: …",),
     )
     run = Run((), diagnoses=(first,))
-    assert diagnoses.lines(run) == ["code: as Southwell's own solver without hub radius (remains 0.0002 %)."]
+    assert diagnoses.lines(run) == ["code: agrees with Southwell's own solver without hub radius (0.0002 % remains)."]
     (row,) = diagnoses.rows(run, "beam")
     assert row["most probable causes"] == "a; b"
     assert diagnoses.rows(run, "other") == []
@@ -67,4 +67,6 @@ def test_the_terminal_and_the_report_show_it() -> None:
 
 def test_a_diagnosis_tolerates_a_mode_that_the_solver_names_otherwise() -> None:
     strange = cell(20.0, 5, "torsion 7", 900.0)
-    assert diagnosed(BLADE, [*cells(), strange]).sentence.startswith("as Southwell's own solver without hub radius")
+    assert diagnosed(BLADE, [*cells(), strange]).sentence.startswith(
+        "agrees with Southwell's own solver without hub radius"
+    )

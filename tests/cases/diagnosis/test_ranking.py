@@ -41,7 +41,7 @@ def test_a_seeded_cause_is_named_and_what_has_no_effect_is_said() -> None:
     wrong = replace(BLADE, hub_radius=0.0)
     given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, PROBLEM.speeds, 40, 4)])
     diagnosis = explain(PROBLEM, given)
-    assert diagnosis.sentence.startswith("as Southwell's own solver without hub radius (remains 0.0000")
+    assert diagnosis.sentence.startswith("agrees with Southwell's own solver without hub radius (0.0000")
     assert diagnosis.without_effect == ("with precone reversed",)
     assert "without softening" not in diagnosis.sentence
 

@@ -321,7 +321,7 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
     [
         ("{0}/none --against {0}/before", "none: cannot be read"),
         ("{0}/after --against {0}/none", "none: cannot be read"),
-        ("{0}/after --against {0}/empty", "no runs in it"),
+        ("{0}/after --against {0}/empty", "contains no runs"),
         ("{0}/after --against {0}/history.jsonl --commit god1", "did you mean good1"),
         ("{0}/after --against {0}/before --commit x", "one run, not a history"),
         ("{0}/after --against {0}/before --junit {0}/none/j.xml", "--junit .*cannot be written"),

@@ -251,4 +251,4 @@ def test_installed_in_a_clean_environment(tmp_path: Path) -> None:
     assert (example / "out" / "report.md").exists()
     status, shown = tests("test_mistaken.py")
     assert (status, "18 failed, 3 passed" in shown) == (1, True), shown
-    assert "as Southwell's own solver with this fault: no geometric stiffness" in shown
+    assert "agrees with Southwell's own solver with this fault: no geometric stiffness" in shown

@@ -126,8 +126,8 @@ def test_a_folder_that_cannot_be_written_is_told(
     [
         ('{"kind": "cell", "nonsense": 1}\n', 2, "line 1: not a result"),
         ("not json\n", 2, "line 1: not a result"),
-        ("", 3, "incomplete: there are no cells in it"),
-        ('{"kind": "ce', 3, "incomplete: there are no cells in it"),
+        ("", 3, "incomplete: contains no results"),
+        ('{"kind": "ce', 3, "incomplete: contains no results"),
     ],
 )
 def test_results_that_cannot_be_read_are_told(
@@ -366,7 +366,7 @@ def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
         ("modes {folder}/a.toml", "no such file"),
         ("mechanism {folder}.toml", "cannot be read (a folder, not a file)"),
         ("condense {folder}.toml", "cannot be read (a folder, not a file)"),
-        ("show {blade} --subset 1:1", "subset: ElastoDyn has none, HAWC2 has"),
+        ("show {blade} --subset 1:1", "subset: ElastoDyn files have no such option, HAWC2 files do"),
         ("show {blade} --precone 95", "--precone 95: beyond ±90 degrees"),
         ("show {blade} --pitch 1e6", "--pitch 1e+06: beyond ±180 degrees"),
         ("show {blade} --length 1e300", "--length 1e+300: not a length"),

@@ -146,7 +146,7 @@ def contents(path: Path, mount: Mount) -> Contents:
         np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
     )
     rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
-    columns.need(rises, "r", r, "not beyond the station before it: sort them and drop duplicates")
+    columns.need(rises, "r", r, "not beyond the previous station: sort them and remove duplicates")
     return Contents(columns, body, file_mount, (text.path, *([htc.path] if htc else [])))
 
 

@@ -191,7 +191,7 @@ def points(body: Body) -> Array:
     if len(falls):
         k = int(falls[0])
         raise CaseError(
-            f"{sections[k].at}: sec: z = {c2[k, 2]:g} m: not beyond the one before: sort them and drop duplicates"
+            f"{sections[k].at}: sec: z = {c2[k, 2]:g} m: not beyond the previous one: sort them and remove duplicates"
         )
     return c2
 

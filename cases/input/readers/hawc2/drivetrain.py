@@ -52,8 +52,8 @@ def hub_and_drivetrain(
     uneven = max(np.abs(asymmetry).max(), abs(hub[3, 3] - hub[4, 4]))
     if uneven > EQUAL * moment:
         raise CaseError(
-            f"{path}: {split.shaft}: with the hubs it is not alike in all directions around its axis ({uneven:g} of "
-            f"{moment:g} kg m²), so that the turbine has no constant modes: give equal moments of inertia"
+            f"{path}: {split.shaft}: the moments of inertia of shaft and hubs across the axis differ ({uneven:g} of "
+            f"{moment:g} kg m²), so that the turbine has no constant modes: make them equal"
         )
     joint = split.joints.get((split.relatives[split.shaft].parent, split.shaft))
     if joint is None:

@@ -52,7 +52,7 @@ def frames(path: Path, split: Parts, tower: Line, lines: dict[str, Line]) -> Fra
     """Where the bodies are.
 
     Raises:
-        CaseError: the tower is not vertical, the rotor's axis is not level, or the blades are mounted unequally.
+        CaseError: the tower is not vertical, the rotor's axis is not level, or the blades are mounted differently.
     """
     vertical = np.sign(tower.end[2] - tower.nodes[0, 2])
     if np.abs(split.base @ np.array([0.0, 0.0, vertical]) - [0.0, 0.0, -1.0]).max() > EQUAL:
@@ -72,7 +72,7 @@ def frames(path: Path, split: Parts, tower: Line, lines: dict[str, Line]) -> Fra
     axis = axis if axis @ first[:3, 1] >= 0 else -axis  # HAWC2's y of a blade points downwind
     level = float(np.hypot(axis[1], axis[2]))
     if level < LEVEL:
-        raise CaseError(f"{path}: {split.shaft}: its axis is not level: not a turbine with a horizontal axis")
+        raise CaseError(f"{path}: {split.shaft}: its axis is not horizontal, which is not supported")
     yaw = float(np.arctan2(-axis[1], axis[2]))
     to_wind = sp.pose(sp.rotation(0, np.array(-yaw)), np.zeros(3))
     pose = {name: to_wind @ at for name, at in pose.items()}
@@ -126,7 +126,7 @@ def _hub(path: Path, split: Parts, pose: dict[str, Array], axis: Array, tilt: fl
     sizes = np.array([max(1.0, np.abs(centres[0]).max())] * 3)
     if (np.abs(np.array(centres) - centres[0]) > EQUAL * sizes).any() or np.ptp(np.array(mounts), axis=0).max() > EQUAL:
         raise CaseError(
-            f"{path}: {split.blades[0]} …: mounted unequally (hub radius, precone or pitch): give equal blades"
+            f"{path}: {split.blades[0]} …: mounted differently (hub radius, precone or pitch): give equal blades"
         )
     n = len(split.blades)
     gaps = np.mod(np.array(azimuths) - azimuths[0] + np.pi / n, 2.0 * np.pi) - np.pi / n

@@ -108,13 +108,13 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
         raise CaseError(f"{htc.path}: {name}: c2_def needs at least two sections")
     if np.diff(points[:, 2]).min() < 0 and any(np.abs(mass[:, i, j]).any() for i, j in ((0, 4), (0, 5), (4, 5))):
         raise CaseError(
-            f"{file}: x_cg, y_cg, pitch: not zero on {name}, which points along −z: their directions are not certain; make "
-            "them zero"
+            f"{file}: x_cg, y_cg, pitch: not zero on {name}, which points along −z: their directions are ambiguous; set "
+            "them to zero"
         )
     steps = np.linalg.norm(np.diff(points[:, :3], axis=0), axis=1)
     if steps.min() <= 0:
         k = int(steps.argmin()) + 1
-        raise CaseError(f"{sections[k].at}: sec: at the place of the one before: drop one")
+        raise CaseError(f"{sections[k].at}: sec: at the position of the previous section: remove one of them")
     arc = np.concatenate([[0.0], np.cumsum(steps)])
     uniform = all(np.abs(m - m[:1]).max() <= EVEN * np.abs(m).max() for m in (stiffness, mass))
     if abs(r[-1] - arc[-1]) <= bodies.LENGTHS * arc[-1]:

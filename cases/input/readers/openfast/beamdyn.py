@@ -81,8 +81,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     mounted = elastodyn.complete(mount, hub_data.mount if hub_data else None)
     if main is None and mounted.length is None:
         raise CaseError(
-            f"{path}: length: stations are fractions of it, and the main file with the key points is not beside it: "
-            "give that file instead, or --length for a straight, untwisted blade"
+            f"{path}: length: missing: stations are fractions of the length, and no main file with key points is in "
+            "the folder: give the main file instead, or --length for a straight, untwisted blade"
         )
     axis = _axis(_points(main)) if main is not None else line(mounted.length or 0.0)
     sections, stiffness, mass = _sections(text)
@@ -166,7 +166,7 @@ def _points(main: Text) -> Table:
             "the first key point is the root; begin at 0, 0, 0 and put the hub's radius into the main file",
         )
     rises = np.concatenate([[True], np.diff(z) > ROUNDING * np.abs(z).max()])
-    points.need(rises, "kp_zr", z, "not beyond the key point before it: sort them and drop duplicates")
+    points.need(rises, "kp_zr", z, "not beyond the previous key point: sort them and remove duplicates")
     if count < 2:
         raise CaseError(f"{main.at(points.lines[0])}: 1 key point: a blade needs at least a root and a tip")
     return points

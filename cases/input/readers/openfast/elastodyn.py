@@ -104,7 +104,7 @@ def sibling_file(path: Path, kind: Callable[[Text], bool], file_of: Callable[[Te
             candidates.append(candidate)
     if len(candidates) > 1:
         names = ", ".join(f.name for f in candidates)
-        raise CaseError(f"{path}: {len(candidates)} main files beside it name it ({names}): choose one with --main")
+        raise CaseError(f"{path}: {len(candidates)} main files in its folder name it ({names}): choose one with --main")
     return candidates[0] if candidates else None
 
 
@@ -118,7 +118,7 @@ def hub(text: Text) -> Hub:
     tip, root = value(text, entries, "TipRad"), value(text, entries, "HubRad")
     if tip <= root:
         raise CaseError(
-            f"{text.path}: TipRad {tip:g} is not beyond HubRad {root:g}: no blade between them; correct one"
+            f"{text.path}: TipRad {tip:g} is not beyond HubRad {root:g}: the blade has no length; correct one of them"
         )
     mount = Mount(
         length=tip - root,
@@ -152,7 +152,7 @@ def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) ->
     mounted = complete(mount, hub_data.mount if hub_data else None)
     if mounted.length is None:
         raise CaseError(
-            f"{text.path}: length: stations are fractions of it, and no main file defines it: "
+            f"{text.path}: length: missing: stations are fractions of the length, and no main file defines it: "
             "give --main FILE, or --length and --hub-radius"
         )
     by_mass, by_flap, by_edge = mount.multipliers or tuple(factors.values())

@@ -38,7 +38,7 @@ def hub_of_two(main: Text, entries: Entries, undersling: float) -> np.ndarray:
     if transverse < 0:
         raise CaseError(
             f"{main.at(entries[name.lower()][0])}: {name}: less than HubMass at its distance from the teeter hinge, "
-            f"{mass * (undersling - centre) ** 2:g} kg m²: it is about the hinge; correct one"
+            f"{mass * (undersling - centre) ** 2:g} kg m²: the moment of inertia must be about the hinge; correct one of them"
         )
     moments = np.array([0.0, transverse, transverse if name == "HubIner" else of_shaft])
     return body(mass, moments, np.array([0.0, 0.0, centre]))
@@ -54,8 +54,8 @@ def teeter(main: Text, entries: Entries) -> tuple[Teeter | None, float, tuple[st
         return None, undersling, ("the hub does not teeter (TeetDOF is False)",)
     if number_or(main, "Delta3", 0.0):
         raise CaseError(
-            f"{main.at(entries['delta3'][0])}: Delta3: {number_or(main, 'Delta3', 0.0):g}: only a hinge at right angles to the "
-            "blades is solved here; set it to 0, or TeetDOF to False"
+            f"{main.at(entries['delta3'][0])}: Delta3: {number_or(main, 'Delta3', 0.0):g}: only a teeter hinge perpendicular "
+            "to the blades is supported; set Delta3 to 0, or TeetDOF to False"
         )
     soft = number_or(main, "TeetMod", 0.0) == 1 and number_or(main, "TeetSStP", 0.0) == 0
     stiffness = number_or(main, "TeetSSSp", 0.0) if soft else 0.0

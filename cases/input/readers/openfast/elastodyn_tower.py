@@ -44,8 +44,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     height = mount.length or (tower_height(load(main)) if main else None)
     if height is None:
         raise CaseError(
-            f"{path}: length: stations are fractions of the tower's height, and no main file defines it: give --main FILE, or "
-            "--length"
+            f"{path}: length: missing: stations are fractions of the tower's height, and no main file defines it: "
+            "give --main FILE, or --length"
         )
     tower, notes = beam(text, height)
     motions = "flapwise is fore-aft, edgewise is side-to-side"
@@ -75,7 +75,7 @@ def tower_height(main: Text) -> float:
     base = next((value(main, entries, name) for name in ("TowerBsHt", "TwrRBHt") if name.lower() in entries), 0.0)
     if top <= base:
         raise CaseError(
-            f"{main.path}: TowerHt {top:g} is not above TowerBsHt {base:g}: no tower between them; correct one"
+            f"{main.path}: TowerHt {top:g} is not above TowerBsHt {base:g}: the tower has no height; correct one of them"
         )
     return top - base
 

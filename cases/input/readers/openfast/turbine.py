@@ -126,7 +126,7 @@ def _nacelle(main: Text, entries: Entries) -> np.ndarray:
     if about_centre < 0:
         raise CaseError(
             f"{main.at(entries['nacyiner'][0])}: NacYIner: {about_yaw:g}: less than NacMass at its distance from the yaw axis, "
-            f"{mass * (x**2 + y**2):g} kg m²: it is about the yaw axis; correct one"
+            f"{mass * (x**2 + y**2):g} kg m²: the moment of inertia must be about the yaw axis; correct one of them"
         )
     out = body(mass, np.array([about_centre, 0.0, 0.0]), np.array([z, -y, x]))
     out[:3, :3] += number_or(main, "YawBrMass", 0.0) * np.eye(3)

@@ -211,5 +211,5 @@ def test_what_is_not_a_tower_on_the_ground_is_refused(tmp_path: Path, kind: int,
 
 
 def test_it_is_no_blade(tmp_path: Path) -> None:
-    with pytest.raises(CaseError, match="a tower; give the file of a blade"):
+    with pytest.raises(CaseError, match="this is the file of a tower: give the file of"):
         readers.reading(write(tmp_path))

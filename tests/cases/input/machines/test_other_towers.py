@@ -115,5 +115,5 @@ def test_a_cone_in_windio(tmp_path: Path) -> None:
 def test_a_file_without_a_tower_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "other.dat"
     path.write_text("nothing\n")
-    with pytest.raises(CaseError, match="no tower of a format with one"):
+    with pytest.raises(CaseError, match="no tower in a supported format"):
         towers.read(path)

@@ -99,7 +99,8 @@ def test_an_orientation_that_does_not_define_the_hub_is_not_guessed(tmp_path: Pa
     path.write_text(path.read_text().replace(old, new))
     assert "hub_radius" in readers.reading(path).unstated
     with pytest.raises(
-        CaseError, match=r"rotor.htc: hub_radius: not in the files read \(HAWC2\), and needed at speed: .*--hub-radius"
+        CaseError,
+        match=r"rotor.htc: hub_radius: not in the files read \(HAWC2\), but required at speed: .*--hub-radius",
     ):
         southwell.read(path)
 

@@ -282,7 +282,7 @@ BAD = {
     "st column": (ST, "\t3.000000e-03", "", ON, r"line 6: 18 numbers instead of 19"),
     "st NaN": (ST, "1.000000e+10", "nan", ON, r"line 6: E: nan: not a finite number"),
     "st negative": (ST, "1.000000e+10", "-1e10", ON, r"line 6: E: -1e\+10: it must be positive"),
-    "st duplicate": (ST, "1.200000e+01", "0.0", ON, r"line 7: r: 0: not beyond the station before it"),
+    "st duplicate": (ST, "1.200000e+01", "0.0", ON, r"line 7: r: 0: not beyond the previous station"),
     "st root": (ST, "0.000000e+00\t1.0", "1.0\t1.0", ON, r"line 6: r: 1: the first station is the root"),
     "st subset": (ST, "$1 3", "$7 3", ON, r"no set 1, subset 1: it has 1:7, 1:2: correct --subset"),
     "htc sec": (HTC, "-0.05   10.0", "ten", Mount(), r"hawc2.htc: line 26: sec: not x, y, z and twist"),
@@ -308,7 +308,7 @@ BAD = {
         "1         beam_type",
         "2         beam_type",
         Mount(),
-        r"bmodes.bmi: line 6: beam_type: not 1: a tower",
+        r"bmodes.bmi: line 6: beam_type: not 1: this is the file of a tower",
     ),
     "bmi hub": (BMI, "4         hub_conn", "2         hub_conn", Mount(), r"line 13: hub_conn: 2: a blade needs a hub"),
     "bmi radius": (

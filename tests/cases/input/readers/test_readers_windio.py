@@ -41,7 +41,7 @@ BAD: list[tuple[int, str, object, str]] = [
     ),
     (1, f"{MB}.stiff_matrix.grid", [0, 0.4, 0.9], "stiff_matrix.grid: 0.9: .*begin at 0 and end at 1"),
     (1, f"{MB}.stiff_matrix.grid", [0.1, 0.4, 1], "stiff_matrix.grid: 0.1: .*begin at 0 and end at 1"),
-    (1, f"{MB}.stiff_matrix.grid", [0, 0, 1], "stiff_matrix.grid: 0: not beyond the one before: sort them"),
+    (1, f"{MB}.stiff_matrix.grid", [0, 0, 1], "stiff_matrix.grid: 0: not beyond the previous one: sort them"),
     (1, f"{MB}.inertia_matrix.grid", [0, 1], "inertia_matrix.values: 3 values for 2 grid points"),
     (1, f"{MB}.stiff_matrix.values.1", [1.0] * 20, r"values\[1\]: 20 numbers instead of 21: check the row"),
     (1, f"{MB}.inertia_matrix", None, "six_x_six: no key inertia_matrix: .*; add it"),
@@ -51,11 +51,11 @@ BAD: list[tuple[int, str, object, str]] = [
     (2, f"{BLADE}.reference_axis.z.values", [0, 10, 5, 30, 40], "reference_axis.z: does not rise at grid 0.5"),
     (2, f"{BLADE}.reference_axis.x.values.0", 0.5, "reference_axis: begins 0.5 m from the root"),
     (2, f"{BLADE}.reference_axis", None, "components.blade: no key reference_axis"),
-    (2, f"{BLADE}.reference_axis", "straight", "components.blade.reference_axis: keys are needed"),
+    (2, f"{BLADE}.reference_axis", "straight", "components.blade.reference_axis: expected keys with values"),
     (2, f"{EP}.stiffness_matrix.K55.1", -4.5e9, r"at station 2: diagonal entry 5 is -4.5e\+09: it must be positive"),
     (2, f"{EP}.inertia_matrix.mass.0", -1.0, "at station 1: diagonal entry 1 is -1: it must be positive"),
     (2, f"{EP}.stiffness_matrix.K55", None, "stiffness_matrix: no K55: a blade must resist bending"),
-    (2, f"{EP}.stiffness_matrix.K33", None, "stiffness_matrix: K33 is not given but couplings with it are"),
+    (2, f"{EP}.stiffness_matrix.K33", None, "stiffness_matrix: K33 is missing, although couplings with it are given"),
     (
         2,
         f"{EP}.point_mass",
@@ -90,13 +90,13 @@ def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
     ("content", "phrase"),
     [
         ("a: [1, 2\nb: {", r"line \d+: not YAML: .*: correct it"),
-        ("# nothing\n", "nothing but comments"),
+        ("# nothing\n", "contains only comments"),
         (
             "components: !include blade.yaml\n",
-            r"line 1: components: is in another file \(blade.yaml\): put its text here",
+            r"line 1: components: is in another file \(blade.yaml\): insert its text here",
         ),
         ("components:\n\tblade: 1\n", r"line 2: not YAML"),
-        ("- 1\n", "keys are needed"),
+        ("- 1\n", "expected keys with values"),
     ],
 )
 def test_what_is_no_such_yaml_is_told(tmp_path: Path, content: str, phrase: str) -> None:

@@ -40,7 +40,7 @@ def beam(tmp_path: Path) -> Path:
             "--rpm: 'fast' is neither a speed nor first:last:step, as in 0:30:5",
         ),
         ("campbell park-cantilever --rpm 30:0:5", "--rpm: '30:0:5': needs 0 ≤ first ≤ last"),
-        ("campbell park-cantilever --rpm 10", "a diagram needs two at least"),
+        ("campbell park-cantilever --rpm 10", "a diagram needs at least two"),
         ("campbell park-cantilever --per-rev one", "--per-rev: 'one' is neither first:last nor whole numbers"),
         ("campbell park-cantilever --per-rev 0:3", "--per-rev: '0:3': needs 1 ≤ first ≤ last"),
         ("campbell park-cantilever --per-rev 3:1", "--per-rev: '3:1': needs 1 ≤ first ≤ last"),

@@ -75,5 +75,5 @@ def test_lines_margins_and_uncertainty(tmp_path: Path) -> None:
     met = {(c.line, c.per_rev) for c in diagram.crossings if 1.0 <= c.omega <= 2.0}
     assert met
     assert all(not n.kept and n.distance == 0.0 for n in diagram.nearest if (n.line, n.per_rev) in met)
-    with pytest.raises(CaseError, match="two at least"):
+    with pytest.raises(CaseError, match="at least two"):
         machine_diagram(machine, MachineRequest((1.0,)))

@@ -138,8 +138,14 @@ def test_blades_of_a_case_each_have_a_folder(
         ([str(DATA / "hawc2_st.dat")], "choose one with --subset"),
         ([str(DATA / "hawc2_st.dat"), "--subset", "one"], "--subset: 'one' is not set:subset"),
         ([str(DATA / "elastodyn_main.dat"), "--multipliers", "1,2"], "--multipliers: '1,2' is not mass,flap,edge"),
-        ([str(DATA / "elastodyn_main.dat"), "--multipliers", "1,0,1"], "--multipliers: '1,0,1': they multiply: give"),
-        ([str(DATA / "beamdyn_main.dat"), "--multipliers", "1,1,1"], "beamdyn_main.dat: multipliers: BeamDyn has none"),
+        (
+            [str(DATA / "elastodyn_main.dat"), "--multipliers", "1,0,1"],
+            "--multipliers: '1,0,1': not positive factors: give",
+        ),
+        (
+            [str(DATA / "beamdyn_main.dat"), "--multipliers", "1,1,1"],
+            "beamdyn_main.dat: multipliers: BeamDyn files have no such",
+        ),
         ([str(DATA / "elastodyn_blade.dat"), "--length", "-1"], "--length -1: not a length"),
         ([str(DATA / "elastodyn_blade.dat"), "--precone", "nan"], "--precone nan: not a finite number"),
         (["park-blade", "--length", "50"], "a case defines"),

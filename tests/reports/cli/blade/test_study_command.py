@@ -102,7 +102,7 @@ def test_a_speed_without_a_frequency_is_status_1_with_its_reason(
         ("low = 0.9", "low = -0.9", "properties.mass.low: -0.9: a factor is positive: correct it"),
         ("high = 1.1", "hgh = 1.1", "properties.mass.hgh: unknown key: did you mean high?"),
         ("rad_s = [0.0, 10.0]", "rad_s = [10.0, 0.0]", "speeds.rad_s: [10.0, 0.0]: not ascending"),
-        ("rad_s = [0.0, 10.0]", "gamma = [1.0]", "speeds.gamma: it needs blade.kind"),
+        ("rad_s = [0.0, 10.0]", "gamma = [1.0]", "speeds.gamma: requires blade.kind"),
         ("samples = 2", "samples = 0", "study.toml: samples: 0: "),
         ("seed = 1", "seed = -1", "study.toml: seed: -1: "),
         ('name = "small"', "", "study.toml: name: missing: add it"),
@@ -131,7 +131,7 @@ def test_samples_without_properties_are_refused(capsys: pytest.CaptureFixture[st
 @pytest.mark.parametrize(
     ("options", "said"),
     [
-        (["--out", "out.csv"], "--out out.csv: the name says neither JSON Lines nor Parquet"),
+        (["--out", "out.csv"], "--out out.csv: neither JSON Lines nor Parquet"),
         (["--out", "no/such/out.jsonl"], "--out no/such/out.jsonl: cannot be written (No such file or directory)"),
         (["--scheduler", "slurm"], "--workers: missing: give the number of workers"),
         (

@@ -191,11 +191,11 @@ REFUSED = {
     "unequal cone": (
         "0 60 0;\n  body2_eulerang 3 0 0",
         "0 60 0;\n  body2_eulerang 4 0 0",
-        "blade1 …: mounted unequally",
+        "blade1 …: mounted differently",
     ),
     "unequal angles": ("body2_eulerang 0 60 0", "body2_eulerang 0 61 0", "blade1 …: not at equal angles"),
-    "uneven shaft": ("3000 1500 1500", "3000 1500 1900", "not alike in all directions around its axis"),
-    "vertical axis": ("mbdy2_eulerang 90 0 0", "mbdy2_eulerang 0 0 0", "shaft: its axis is not level"),
+    "uneven shaft": ("3000 1500 1500", "3000 1500 1900", "moments of inertia of shaft and hubs across the axis differ"),
+    "vertical axis": ("mbdy2_eulerang 90 0 0", "mbdy2_eulerang 0 0 0", "shaft: its axis is not horizontal"),
     "no such node": ("mass 2 0 0 -0.1", "mass 3 0 0 -0.1", "node 3: the body has 2 nodes"),
     "direction of an offset": (
         "filename towertop.st",

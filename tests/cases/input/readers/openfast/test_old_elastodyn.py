@@ -149,5 +149,5 @@ modes = 2
 
 
 def test_offsets_of_another_format_are_refused() -> None:
-    with pytest.raises(readers.CaseError, match="offsets: HAWC2 has none, ElastoDyn has"):
+    with pytest.raises(readers.CaseError, match="offsets: HAWC2 files have no such option, ElastoDyn files do"):
         readers.read(DATA / "hawc2.htc", Mount(offsets=False))

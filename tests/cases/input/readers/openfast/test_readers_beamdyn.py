@@ -80,7 +80,7 @@ def test_old_and_new_headers_are_read_alike() -> None:
 
 
 def test_two_main_files_beside_a_blade_file_are_not_chosen_from() -> None:
-    with pytest.raises(CaseError, match="2 main files beside it name it"):
+    with pytest.raises(CaseError, match="2 main files in its folder name it"):
         beamdyn.read(BLADE, STRAIGHT)
 
 
@@ -180,7 +180,7 @@ BAD = {
         BLADE,
         "  0.400000",
         "  0.000000",
-        r"line 26: station_eta: 0: not beyond the station before it: sort them",
+        r"line 26: station_eta: 0: not beyond the previous station: sort them",
     ),
     "end": (BLADE, "  1.000000\n", "  0.900000\n", r"line 41: station_eta: 0.9: .*begin at 0 and end at 1"),
     "key points": (
@@ -189,7 +189,7 @@ BAD = {
         "          6   kp_total",
         r"main.dat: line 19: the table ends after 5 of 6 rows",
     ),
-    "duplicate": (MAIN, "2.0000000E+01  7", "1.0E+01  7", r"line 16: kp_zr: 10: not beyond the key point before it"),
+    "duplicate": (MAIN, "2.0000000E+01  7", "1.0E+01  7", r"line 16: kp_zr: 10: not beyond the previous key point"),
     "root": (MAIN, "0.0000000E+00  1.2", "0.1E+00  1.2", r"line 14: kp_zr: 0.1: the first key point is the root"),
     "file": (MAIN, '"beamdyn_blade.dat"', '"other.dat"', r"other.dat: no such file"),
 }
@@ -214,7 +214,7 @@ def test_a_truncated_file(tmp_path: Path) -> None:
 def test_a_blade_file_without_length(tmp_path: Path) -> None:
     (tmp_path / BLADE.name).write_text(BLADE.read_text())
     with pytest.raises(
-        CaseError, match=r"length: .*give that file instead, or --length for a straight, untwisted blade"
+        CaseError, match=r"length: .*give the main file instead, or --length for a straight, untwisted blade"
     ):
         readers.read(tmp_path / BLADE.name)
     assert readers.read(tmp_path / BLADE.name, STRAIGHT).length == 40.0

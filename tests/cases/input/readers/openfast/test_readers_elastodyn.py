@@ -43,7 +43,7 @@ def test_other_multipliers_can_be_given() -> None:
 
 
 def test_multipliers_of_another_format_are_refused() -> None:
-    with pytest.raises(CaseError, match=r"hawc2.htc: multipliers: HAWC2 has none, ElastoDyn has"):
+    with pytest.raises(CaseError, match=r"hawc2.htc: multipliers: HAWC2 files have no such option, ElastoDyn files do"):
         readers.read(DATA / "hawc2.htc", Mount(multipliers=(1.0, 1.0, 1.0)))
 
 
@@ -69,7 +69,7 @@ def test_two_main_files_that_name_a_blade_are_not_chosen_from(tmp_path: Path) ->
     for name in ("a.dat", "b.dat"):
         (tmp_path / name).write_text(MAIN.read_text())
     (tmp_path / BLADE.name).write_text(BLADE.read_text())
-    with pytest.raises(CaseError, match=r"2 main files beside it name it \(a.dat, b.dat\): choose one with --main"):
+    with pytest.raises(CaseError, match=r"2 main files in its folder name it \(a.dat, b.dat\): choose one with --main"):
         readers.read(tmp_path / BLADE.name)
 
 
@@ -190,11 +190,11 @@ BAD = {
     "not to 1": (("1.0000000E+00  3.75", "0.9E+00  3.75"), r"line 21: BlFract: 0.9: .*begin at 0 and end at 1"),
     "duplicate": (
         ("5.0000000E-01", "2.0E-01"),
-        r"line 19: BlFract: 0.2: not beyond the station before it: sort them",
+        r"line 19: BlFract: 0.2: not beyond the previous station: sort them",
     ),
     "no farther than rounding": (
         ("2.0000000E-01  3.0", "1e-300  3.0"),
-        r"line 18: BlFract: 1e-300: not beyond the station before it",
+        r"line 18: BlFract: 1e-300: not beyond the previous station",
     ),
     "no name": (("AdjBlMs ", ""), r"bad.dat: AdjBlMs: missing: give the whole file"),
     "multiplier": (("1.5   AdjFlSt", "-1   AdjFlSt"), r"line 12: AdjFlSt: -1: a factor must be positive"),

@@ -54,7 +54,7 @@ def test_the_hinge_as_the_deck_says(tmp_path: Path) -> None:
     read = turbine.read(path)
     assert read.turbine.teeter == Teeter(0.2, 0.0)
     assert {"TeetSStP", "TeetSSSp"} <= {u.name for u in read.source.unused}
-    with pytest.raises(CaseError, match="Delta3: 30: only a hinge at right angles"):
+    with pytest.raises(CaseError, match="Delta3: 30: only a teeter hinge perpendicular"):
         turbine.read(changed(deck(tmp_path, two=True), "0 Delta3", "30 Delta3"))
 
 
