@@ -6,9 +6,9 @@ from typing import Any
 
 import numpy as np
 
+from ...core.mechanism.description import inertia
 from ...core.modes import STATIONS
-from ...core.space import spatial as sp
-from ...core.space.inertia import about_centre, transformed
+from ...core.space.inertia import about_centre
 from ...core.turbine import rotor as equations
 from ...core.turbine.turbine import Turbine, shaft_pose
 from ...references.protocol.turbines import TurbineModes
@@ -23,11 +23,9 @@ CONE = np.radians(-10.0)
 
 def _exaggerated(turbine: Turbine) -> Turbine:
     """Large angles, and a heavy nacelle far from the tower's top: the first modes depend on each."""
-    centre = sp.pose(np.eye(3), np.array([3.0, 1.0, 4.0]))
-    nacelle = np.ascontiguousarray(transformed(np.diag([4e5] * 3 + [8e6, 6e6, 6e6]), centre))
     return replace(
         turbine,
-        nacelle=nacelle,
+        nacelle=inertia(4e5, (8e6, 6e6, 6e6), (3.0, 1.0, 4.0)),
         shaft=SHAFT,
         blade=replace(turbine.blade, precone=CONE),
         yaw=2e9,

@@ -7,8 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ....core.space import spatial as sp
-from ....core.space.inertia import transformed
+from ....core.mechanism.description import inertia
 from ....core.turbine.tower import Support, Tower, check_tower
 from ....core.turbine.turbine import Drivetrain, Teeter, Turbine, shaft_pose
 from .. import readers, toml
@@ -239,14 +238,11 @@ def _six(where: str, rows: list[list[float]]) -> Array:
 def _body(mass: float, moments: Three, centre: Three) -> Array:
     """(6, 6) inertia in the tower's axes."""
     x, y, z = centre
-    inertia = np.diag([mass] * 3 + [moments[2], moments[1], moments[0]])
-    return np.ascontiguousarray(transformed(inertia, sp.pose(np.eye(3), np.array([z, -y, x]))))
+    return inertia(mass, moments[::-1], (z, -y, x))
 
 
 def _hub(data: HubData) -> Array:
-    transverse = data.transverse_inertia
-    inertia = np.diag([data.mass] * 3 + [transverse, transverse, data.inertia])
-    return np.ascontiguousarray(transformed(inertia, sp.pose(np.eye(3), np.array([0.0, 0.0, data.centre]))))
+    return inertia(data.mass, [data.transverse_inertia] * 2 + [data.inertia], (0.0, 0.0, data.centre))
 
 
 def _shaft(data: NacelleData) -> Array:

@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .....core.blade import TORSION
+from .....core.mechanism.description import inertia
 from .....core.space import spatial as sp
 from .....core.space.inertia import transformed
 from ...errors import CaseError
@@ -179,9 +180,8 @@ def _masses(body: bodies.Body, nodes: Array) -> tuple[tuple[Mass, ...], tuple[Un
             )
         if min(numbers[4:8]) < 0:
             raise CaseError(f"{command.at}: concentrated_mass: a negative mass or moment of inertia: correct it")
-        about_centre = np.diag([numbers[4]] * 3 + numbers[5:8])
         centre = nodes[node] + numbers[1:4]
-        out.append(Mass(node, np.ascontiguousarray(transformed(about_centre, sp.pose(np.eye(3), centre)))))
+        out.append(Mass(node, inertia(numbers[4], numbers[5:8], centre)))
         why = "products of inertia of a concentrated mass are not supported"
         not_used += unused("concentrated_mass", numbers[8:], "kg m²", command.text.path, why)
     return tuple(out), tuple(not_used)

@@ -7,8 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from .....core.space import spatial as sp
-from .....core.space.inertia import transformed
+from .....core.mechanism.description import inertia
 from .....core.turbine.turbine import Teeter
 from ...errors import CaseError
 from ..source import Unused
@@ -20,8 +19,8 @@ Entries = dict[str, tuple[int, str]]
 
 def hub(main: Text, entries: Entries) -> np.ndarray:
     """(6, 6) inertia of the hub at the rotor's apex, in the shaft's axes."""
-    moments = np.array([0.0, 0.0, value(main, entries, "HubIner")])
-    return body(value(main, entries, "HubMass"), moments, np.array([0.0, 0.0, number_or(main, "HubCM", 0.0)]))
+    moments = (0.0, 0.0, value(main, entries, "HubIner"))
+    return inertia(value(main, entries, "HubMass"), moments, (0.0, 0.0, number_or(main, "HubCM", 0.0)))
 
 
 def hub_of_two(main: Text, entries: Entries, undersling: float) -> np.ndarray:
@@ -41,7 +40,7 @@ def hub_of_two(main: Text, entries: Entries, undersling: float) -> np.ndarray:
             f"{mass * (undersling - centre) ** 2:g} kg m²: the moment of inertia must be about the hinge; correct one of them"
         )
     moments = np.array([0.0, transverse, transverse if name == "HubIner" else of_shaft])
-    return body(mass, moments, np.array([0.0, 0.0, centre]))
+    return inertia(mass, moments, (0.0, 0.0, centre))
 
 
 def teeter(main: Text, entries: Entries) -> tuple[Teeter | None, float, tuple[str, ...]]:
@@ -68,9 +67,3 @@ def without_hinge(of_blade: tuple[Unused, ...], teeter: Teeter | None) -> tuple[
     used_names = ("TeetDOF", "UndSling", "TeetMod", *(("TeetSSSp",) if teeter and teeter.stiffness else ()))
     out = (u for u in of_blade if u.name not in used_names)
     return tuple(replace(u, why="the hinge is linear and undamped") if u.name in TEETER else u for u in out)
-
-
-def body(mass: float, moments: np.ndarray, centre: np.ndarray) -> np.ndarray:
-    """(6, 6) inertia of a body with these moments about its mass centre (3,), kg m²."""
-    out = np.diag([mass] * 3 + moments.tolist())
-    return np.ascontiguousarray(transformed(out, sp.pose(np.eye(3), centre)))

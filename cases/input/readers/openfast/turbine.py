@@ -11,6 +11,7 @@ from pathlib import Path
 
 import numpy as np
 
+from .....core.mechanism.description import inertia
 from .....core.turbine.turbine import Drivetrain, Turbine, shaft_pose
 from ...errors import CaseError
 from ..source import Mount, Source, TurbineReading, Unused, unused
@@ -18,7 +19,6 @@ from ..text import Text, flag, integer, keys, load, number_or, value
 from . import elastodyn_hub as hubs
 from . import elastodyn_tower as tower_reader
 from . import elastodyn_unused, fst
-from .elastodyn_hub import body
 from .mode_shapes import TOWER
 
 NAME = "OpenFAST turbine"
@@ -128,7 +128,7 @@ def _nacelle(main: Text, entries: Entries) -> np.ndarray:
             f"{main.at(entries['nacyiner'][0])}: NacYIner: {about_yaw:g}: less than NacMass at its distance from the yaw axis, "
             f"{mass * (x**2 + y**2):g} kg m²: the moment of inertia must be about the yaw axis; correct one of them"
         )
-    out = body(mass, np.array([about_centre, 0.0, 0.0]), np.array([z, -y, x]))
+    out = inertia(mass, (about_centre, 0.0, 0.0), (z, -y, x))
     out[:3, :3] += number_or(main, "YawBrMass", 0.0) * np.eye(3)
     return out
 
