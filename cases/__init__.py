@@ -1,1 +1,1 @@
-"""Which blade, which codes, which target; runs, compares, judges; imports references, core."""
+"""Tasks: blades and turbines are read, solved by codes, compared and judged."""

@@ -19,6 +19,7 @@ NUMBER = re.compile(r"\\tag\{(.*?)\}")
 INLINE = re.compile(r"(?<!</span>)(?<=<code>)[^<\s]+(?=</code>)")
 CELL = re.compile(r"<td.*?</td>", re.S)
 UNIT = re.compile(r"(?<=\d) (?=[%°])|(?<=[±✔≈✘□~]) (?=[<\d+−])")
+PACKAGE = re.compile(r"api/southwell\.(core|references|cases|reports)\.")
 BOLD = re.compile(r'<m[in] mathvariant="bold(?:-italic)?">(.*?)</m[in]>')
 
 RUN = Path(__file__).parents[1] / "reports" / "out"
@@ -63,8 +64,17 @@ def _all(part: Sequence[Any]) -> list[Any]:
         out.append(_extended(entry))
         if isinstance(entry, str) and entry in made and entry.endswith("/index.md"):
             folder = entry.removesuffix("index.md")
-            out += [path for path in made if path.startswith(folder) and path.endswith(".md") and path != entry]
+            out += _grouped(
+                [path for path in made if path.startswith(folder) and path.endswith(".md") and path != entry]
+            )
     return out
+
+
+def _grouped(paths: Sequence[str]) -> list[Any]:
+    """The pages of a folder; those of packages, as ``api/southwell.core.tree.md``, in a section for each part."""
+    out: list[Any] = [path for path in paths if not PACKAGE.match(path)]
+    parts = dict.fromkeys(match[1] for path in paths if (match := PACKAGE.match(path)))
+    return [*out, *({part: [path for path in paths if path.startswith(f"api/southwell.{part}.")]} for part in parts)]
 
 
 def on_files(files: Files, config: MkDocsConfig) -> Files:

@@ -1,1 +1,1 @@
-"""Reference solutions: foreign codes, closed forms and published tables; imports core."""
+"""Reference solutions: foreign codes, closed forms and published tables."""

@@ -1,1 +1,1 @@
-"""Presents the results of ``cases``: Markdown, figures, command line; imports cases, core."""
+"""Presentation of results: command line, notebooks, reports, figures, dashboard and the documentation site."""

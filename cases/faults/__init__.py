@@ -1,1 +1,1 @@
-"""Seeded faults: one faulty component run through the real matrix; a named cell must fail or be inconclusive."""
+"""Seeded faults: the matrix runs with one faulty component, and named cells must fail or be inconclusive."""

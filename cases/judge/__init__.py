@@ -1,4 +1,4 @@
-"""Pairing of modes, uncertainty, verdicts and results. Runs no code.
+"""Pairing of modes, uncertainty, verdicts and results.
 
 Modes of two codes come in; cells with a difference, its uncertainty and a verdict go out.
 """

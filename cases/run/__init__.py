@@ -1,1 +1,1 @@
-"""Where the tasks of a run are executed."""
+"""Executors of tasks: processes of this machine or workers of a Dask cluster."""

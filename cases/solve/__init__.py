@@ -1,4 +1,4 @@
-"""The answers: core refined until it can serve as reference, and codes refined until they can be judged.
+"""Solutions: Southwell's own solver is refined until it can serve as reference, and each code until it can be judged.
 
 A column of the plan comes in; its cells go out.
 """

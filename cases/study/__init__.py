@@ -1,1 +1,1 @@
-"""Parameter studies: sampled properties of blades, solved by core at many speeds on one machine or a cluster."""
+"""Parameter studies: sampled properties of blades, solved at many speeds on one machine or a cluster."""

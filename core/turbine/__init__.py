@@ -1,1 +1,1 @@
-"""A turbine as a machine: tower, nacelle, drivetrain, hub and blades, their modes and the names of these."""
+"""A turbine as a machine: tower, nacelle, drivetrain, hub and blades, and the names of their modes."""

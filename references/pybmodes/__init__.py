@@ -1,1 +1,1 @@
-"""pyBModes: NREL's BModes beam element. A blade comes in; modes go out."""
+"""pyBModes: NREL's BModes beam element."""

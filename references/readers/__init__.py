@@ -1,4 +1,4 @@
-"""Second readers of blade files: other people's parsers, and conversions of their own.
+"""Second readers of blade files: parsers of other projects, with conversions of their own.
 
 ``read(format, path, asked)`` returns the stations of a blade as a parser other than Southwell's sees them. The conversion to
 the axes of ``core.blade`` is written from the manual of each format; nothing here imports ``core`` or ``cases``, so that a

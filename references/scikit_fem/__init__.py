@@ -1,1 +1,1 @@
-"""scikit-fem: a prestressed rotating beam by finite elements. Input: a blade. Output: its modes."""
+"""scikit-fem: rotating, prestressed beams by finite elements."""

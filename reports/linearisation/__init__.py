@@ -1,1 +1,1 @@
-"""Judgements of linearisations as text."""
+"""Verdicts on linearisations as text."""

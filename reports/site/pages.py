@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
-from pkgutil import walk_packages
+from pkgutil import iter_modules, walk_packages
 
 from ...cases.input import library
 from ...cases.judge.results import Cell, Run, Setting
@@ -31,13 +31,8 @@ REPORT = "report.md"
 NOTEBOOK = readme.ROOT / "docs" / "first-blade.ipynb"
 """The notebook that is run for the site."""
 
-FLOORS = {
-    "core": "The language (blade, modes) and Southwell's own solver.",
-    "references": "Answers of other sources: one module for each foreign code, closed forms, printed tables.",
-    "cases": "Which blade, which codes, which target; runs, compares, judges.",
-    "reports": "Shows: Markdown, figures, command line.",
-}
-"""Purpose of each part of the package; a part imports only those before it."""
+FLOORS = ("core", "references", "cases", "reports")
+"""Parts of the package; each imports only those before it."""
 
 
 def pages(folder: Path) -> Pages:
@@ -174,20 +169,45 @@ def command_line() -> str:
 
 
 def api() -> Pages:
-    """One page per part of the package with one section per module, filled from the docstrings by mkdocstrings."""
+    """An index, one page for each module to import, and one for each package inside, filled by mkdocstrings."""
     root = __name__.partition(".")[0]
-    public = f"# {root}\n\nThe names to import from `{root}`; the other pages have every module.\n"
-    out: Pages = {"api/index.md": f"{public}\n::: {root}\n    options:\n      heading_level: 2\n"}
-    options = "    options:\n      heading_level: 2\n      show_submodules: false\n"
-    adapter = "# southwell.adapter\n\nThe stable import for authors of codes.\n"
-    out["api/adapter.md"] = f"{adapter}\n::: {root}.adapter\n{options}"
-    for floor, what in FLOORS.items():
+    out = {
+        f"api/{root}.md": f"# {root}\n\nThe names to import from `{root}`.\n{_documented(root)}",
+        f"api/{root}.adapter.md": f"# {root}.adapter\n{_documented(f'{root}.adapter')}",
+    }
+    index = [
+        "# API",
+        f"Import from [`{root}`]({root}.md), from [`{root}.adapter`]({root}.adapter.md) to add a code, and from "
+        f"[`{root}.multibody`]({root}.core.md#{root}.core.multibody) to describe a mechanism. "
+        "The packages below are internal; their modules may move between versions.",
+    ]
+    for floor in FLOORS:
         package = import_module(f"{root}.{floor}")
-        walked = (m.name for m in walk_packages(package.__path__, f"{root}.{floor}.") if not m.ispkg)
-        names = [name for name in walked if _has_source(name)]
-        text = "".join(f"\n::: {name}\n    options:\n      heading_level: 2\n" for name in names)
-        out[f"api/{floor}.md"] = f"# {root}.{floor}\n\n{what}\n{text}"
-    return out
+        inside = [name for _, name, is_package in walk_packages(package.__path__, f"{package.__name__}.") if is_package]
+        rows = []
+        for name in (package.__name__, *inside):
+            text, modules = _summary(name), _modules(name)
+            if modules:
+                out[f"api/{name}.md"] = f"# {name}\n\n{text}\n" + "".join(_documented(module) for module in modules)
+            rows.append({"package": f"[`{name}`]({name}.md)" if modules else f"`{name}`", "contents": text})
+        index += [f"## {floor}", table(rows)]
+    return {"api/index.md": "\n\n".join(index) + "\n"} | out
+
+
+def _documented(module: str) -> str:
+    """The section of a module on a page, in the syntax of mkdocstrings."""
+    return f"\n::: {module}\n    options:\n      heading_level: 2\n      show_submodules: false\n"
+
+
+def _summary(package: str) -> str:
+    """First line of a package's docstring."""
+    return (import_module(package).__doc__ or "").partition("\n")[0].replace("``", "`")
+
+
+def _modules(package: str) -> list[str]:
+    """The modules of a package that are written in Python, without those of packages inside it."""
+    modules = iter_modules(import_module(package).__path__, f"{package}.")
+    return [module.name for module in modules if not module.ispkg and _has_source(module.name)]
 
 
 def _has_source(module: str) -> bool:

@@ -1,1 +1,1 @@
-"""The report of a run: Markdown, figures, HTML, PDF and one page per code. Takes a ``Run``; returns text and files."""
+"""The report of a run: Markdown, figures, HTML, PDF and one page per code."""
