@@ -134,7 +134,7 @@ def beyond_uncertainty(run: Run) -> str:
                 largest[cell.code] = cell
     listed = "; ".join(f"{summary.plus_minus(cell)} ({where(run, cell)})" for cell in largest.values())
     return (
-        f"Within the target, but more than discretisation explains, so model or input differs: {listed}."
+        f"Within the target, but larger than discretisation explains, so the model or the input differs: {listed}."
         if listed
         else ""
     )

@@ -81,7 +81,7 @@ def headline(run: Run) -> str:
     span = f"{low} ({least}{f': {who}' if who else ''})" + (f" to {many}" if many > low else "")
     own = [case for case, agreeing in counted.items() if agreeing and not any(map(foreign_theory, agreeing))]
     warning = (
-        f" No foreign theory agrees for {', '.join(own)}: the codes solve models that their adapters make."
+        f" No foreign theory agrees for {', '.join(own)}: the codes solve models that Southwell's adapters define."
         if own
         else ""
     )

@@ -45,7 +45,7 @@ function differences() {
         make("ul", {}, ...[...reasons].map(([why, names]) => make("li", {}, make("strong", {}, names.join(", ")), ` ${why}`)))) : "");
   };
   MAIN.append(make("h2", {}, "Difference ± uncertainty"), make("div", { class: "filters" }, chooser("speed", speeds.map((v) => [v, inWords(v)]), draw, "speed", speeds.at(-1))), place, detail,
-    make("p", { class: "muted" }, `Beside each mode: Southwell's own solver with all effects, ${DATA.frequency}. A known difference is from that; every other from that solver with the code's own effects.`));
+    make("p", { class: "muted" }, `Beside each mode: Southwell's own solver with all effects, ${DATA.frequency}. Known differences are from this value; other differences are from Southwell's own solver with the same effects as the code.`));
   draw(speeds.at(-1));
 }
 
