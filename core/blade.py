@@ -96,8 +96,8 @@ class Blade:
     def __repr__(self) -> str:
         mass = float(np.trapezoid(self.mass[:, 0, 0], self.stations)) + float(self.tip_mass[0, 0])
         angles = (("precone", self.precone), ("pitch", self.pitch))
-        more = [f"{name} {np.degrees(angle):.4g}°" for name, angle in angles if angle]
-        facts = [f"{self.length:.6g} m", f"hub radius {self.hub_radius:.6g} m", *more, f"{mass:.6g} kg"]
+        angles_text = [f"{name} {np.degrees(angle):.4g}°" for name, angle in angles if angle]
+        facts = [f"{self.length:.6g} m", f"hub radius {self.hub_radius:.6g} m", *angles_text, f"{mass:.6g} kg"]
         return f"<Blade {self.name}: {', '.join(facts)}, {len(self.stations)} stations>"
 
 

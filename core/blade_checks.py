@@ -75,10 +75,10 @@ def check_blade(blade: "Blade") -> None:
     _curve(blade)
     _stiffness(blade)
     for k, s in enumerate(blade.stations):
-        if wrong := body_fault(blade.mass[k], "kg/m"):
-            raise BladeError(f"mass: at station {k} ({s:g} m): {wrong}")
-    if blade.tip_mass.any() and (wrong := body_fault(blade.tip_mass, "kg")):
-        raise BladeError(f"tip_mass: {wrong}")
+        if problem := body_fault(blade.mass[k], "kg/m"):
+            raise BladeError(f"mass: at station {k} ({s:g} m): {problem}")
+    if blade.tip_mass.any() and (problem := body_fault(blade.tip_mass, "kg")):
+        raise BladeError(f"tip_mass: {problem}")
 
 
 def _arrays(blade: "Blade") -> None:
@@ -113,10 +113,10 @@ def _stations(blade: "Blade") -> None:
         )
     if not 0.0 <= blade.hub_radius <= MAX_LENGTH:
         raise BladeError(f"hub_radius: {blade.hub_radius:g} m: not between 0 and {MAX_LENGTH:g} m: check the unit")
-    for name, most in (("precone", MAX_PRECONE), ("pitch", MAX_PITCH)):
+    for name, limit in (("precone", MAX_PRECONE), ("pitch", MAX_PITCH)):
         angle = np.degrees(getattr(blade, name))
-        if not abs(angle) <= most + 1e-9:
-            raise BladeError(f"{name}: {angle:.6g} degrees: beyond ±{most:g}: check the unit")
+        if not abs(angle) <= limit + 1e-9:
+            raise BladeError(f"{name}: {angle:.6g} degrees: beyond ±{limit:g}: check the unit")
     if (blade.root < 0).any():
         raise BladeError(f"root: {blade.root.min():g}: a negative spring; give 0 for free, inf for clamped")
 
@@ -189,13 +189,13 @@ def _unresolved(blade: "Blade", k: int, arc: Array, chord: Array, allowed: Array
     along = np.diff(blade.curve, axis=0) / chord[:, None]
     bend = np.arccos(np.clip((along[1:] * along[:-1]).sum(1), -1.0, 1.0))  # at the inner stations
     bend[np.isin(s[1:-1], blade.kinks)] = 0.0
-    adjacent, around = (bend[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
+    adjacent, nearby = (bend[max(k - n, 0) : k + n] for n in (1, SWING_REACH))
     longest = chord[k] / np.sinc(adjacent.max(initial=0.0) / (2 * np.pi))  # circular arc with that turn
-    if around.max(initial=0.0) > np.radians(1.0) and chord[k] - allowed[k] < step < longest + allowed[k]:
-        corner = s[max(k - SWING_REACH, 0) + 1 + int(around.argmax())]
+    if nearby.max(initial=0.0) > np.radians(1.0) and chord[k] - allowed[k] < step < longest + allowed[k]:
+        corner = s[max(k - SWING_REACH, 0) + 1 + int(nearby.argmax())]
         return (
             f"{interval} the spline through its points is {arc[k]:.6g} m long instead of {step:.6g} m: it oscillates because "
-            f"the curve turns by {np.degrees(around.max()):.3g}° at {corner:g} m; add points there, or declare a kink: "
+            f"the curve turns by {np.degrees(nearby.max()):.3g}° at {corner:g} m; add points there, or declare a kink: "
             f"kinks = [{corner:g}]"
         )
     return (
@@ -234,20 +234,20 @@ def _stiffness(blade: "Blade") -> None:
         )
     size = np.sqrt(np.where(np.isinf(d), 1.0, d))
     unit = np.where(rigid, 1.0, blade.stiffness) / (size[:, :, None] * size[:, None, :])
-    wrong = np.abs(unit - np.swapaxes(unit, 1, 2))
-    if wrong.max() > SYMMETRY_TOLERANCE:
-        k, i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
+    asymmetry = np.abs(unit - np.swapaxes(unit, 1, 2))
+    if asymmetry.max() > SYMMETRY_TOLERANCE:
+        k, i, j = np.unravel_index(int(asymmetry.argmax()), asymmetry.shape)
         upper, lower = blade.stiffness[k, i, j], blade.stiffness[k, j, i]
         raise BladeError(
             f"stiffness: entries ({i}, {j}) and ({j}, {i}) at station {k} ({blade.stations[k]:g} m) are {upper:g} and "
             f"{lower:g}: it must be symmetric; supply both triangles with equal entries"
         )
-    least = np.linalg.eigvalsh(unit)[:, 0]
-    if least.min() <= 0:
-        k = int(least.argmin())
+    smallest = np.linalg.eigvalsh(unit)[:, 0]
+    if smallest.min() <= 0:
+        k = int(smallest.argmin())
         raise BladeError(
-            f"stiffness: at station {k} ({blade.stations[k]:g} m) not positive definite (least eigenvalue {least[k]:.2g} of a "
-            "unit diagonal): a coupling is too large; check the off-diagonal entries and their units"
+            f"stiffness: at station {k} ({blade.stations[k]:g} m) not positive definite (least eigenvalue {smallest[k]:.2g} "
+            "of a unit diagonal): a coupling is too large; check the off-diagonal entries and their units"
         )
 
 
@@ -277,9 +277,9 @@ def body_fault(matrix: Array, unit: str) -> str | None:
     size = np.sqrt(
         np.maximum(d, ZERO_MOMENT * np.repeat([m, d[3:].max()], 3))
     )  # of a unit diagonal; np.outer may underflow
-    wrong = np.abs(matrix - matrix.T) - SYMMETRY_TOLERANCE * (size[:, None] * size)
-    if (wrong > 0).any():
-        i, j = np.unravel_index(int(wrong.argmax()), wrong.shape)
+    asymmetry = np.abs(matrix - matrix.T) - SYMMETRY_TOLERANCE * (size[:, None] * size)
+    if (asymmetry > 0).any():
+        i, j = np.unravel_index(int(asymmetry.argmax()), asymmetry.shape)
         return (
             f"entries ({i}, {j}) and ({j}, {i}) are {matrix[i, j]:g} and {matrix[j, i]:g}: it must be symmetric; supply "
             "both triangles with equal entries"
@@ -300,7 +300,7 @@ def body_fault(matrix: Array, unit: str) -> str | None:
             "(mass times offset of the centre), 0 on the diagonal; check signs and the order of the rows"
         )
     *_, moments = about_centre(matrix)
-    least, middle, most = np.linalg.eigvalsh(moments)
+    smallest_moment, middle, largest_moment = np.linalg.eigvalsh(moments)
     rounding = INERTIA_TOLERANCE * np.trace(J)
     if (smallest := np.linalg.eigvalsh(J)[0]) < -rounding:
         return (
@@ -308,14 +308,14 @@ def body_fault(matrix: Array, unit: str) -> str | None:
             f"{J[0, 0]:.3g}, {J[1, 1]:.3g}, {J[2, 2]:.3g}; correct them, or set all moments and products to zero to leave out "
             "rotary inertia"
         )
-    if least < -rounding:
+    if smallest_moment < -rounding:
         return (
-            f"smallest moment of inertia about the mass centre is {least:.3g}: negative; give the moments about the reference "
-            "point, m d² included"
+            f"smallest moment of inertia about the mass centre is {smallest_moment:.3g}: negative; give the moments about the "
+            "reference point, m d² included"
         )
-    if most - middle - least > rounding:
+    if largest_moment - middle - smallest_moment > rounding:
         return (
-            f"moments of inertia about the mass centre are {least:.3g}, {middle:.3g}, {most:.3g}: none can be larger than "
-            "the sum of the other two; a section's polar one is that sum; give all three"
+            f"moments of inertia about the mass centre are {smallest_moment:.3g}, {middle:.3g}, {largest_moment:.3g}: none "
+            "can be larger than the sum of the other two; a section's polar one is that sum; give all three"
         )
     return None

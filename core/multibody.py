@@ -192,5 +192,5 @@ def straight_beam(length: float, **section: Any) -> Beams:
     """
     massless = not section.get("mass")
     section["mass"] = section.get("mass") or 1.0
-    made = discretize(uniform_blade("beam", length, 0.0, **section), 1, "half_end" if massless else "consistent")
-    return made.beams
+    mesh = discretize(uniform_blade("beam", length, 0.0, **section), 1, "half_end" if massless else "consistent")
+    return mesh.beams

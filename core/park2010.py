@@ -50,13 +50,13 @@ def cut_joints(t: Tree) -> Array:
     return rows[:, :, :-1].reshape(6 * len(t.cuts), 6 * len(t.inertia))
 
 
-def motions(t: Tree, J: Array, chosen: list[int]) -> Array:
-    """Φᴹ_Z (..., m, 6 b): the rates of the coordinates ``chosen`` from the velocities of the bodies that they join."""
-    rows = np.zeros((*J.shape[:-2], len(chosen), len(t.inertia) + 1, 6), complex)
+def motions(t: Tree, J: Array, coordinates: list[int]) -> Array:
+    """Φᴹ_Z (..., m, 6 b): the rates of the coordinates ``coordinates`` from the velocities of the bodies that they join."""
+    rows = np.zeros((*J.shape[:-2], len(coordinates), len(t.inertia) + 1, 6), complex)
     for inboard, outboard, own, _, _ in t.branches:
-        for k in set(own) & set(chosen):
-            rows[..., chosen.index(k), outboard, :] = cs.left_inverse(J[..., own])[..., own.index(k), :]
-            rows[..., chosen.index(k), inboard, :] = -rows[..., chosen.index(k), outboard, :]
+        for k in set(own) & set(coordinates):
+            rows[..., coordinates.index(k), outboard, :] = cs.left_inverse(J[..., own])[..., own.index(k), :]
+            rows[..., coordinates.index(k), inboard, :] = -rows[..., coordinates.index(k), outboard, :]
     return rows[..., :-1, :].reshape(*rows.shape[:-2], 6 * len(t.inertia))
 
 
@@ -99,8 +99,8 @@ def partition(t: Tree, q: Array, independent: Sequence[str] | None = None) -> Pa
     Phi_q = constraints(t, J, transformation(t, J)).real
     rows = _pivots(Phi_q.T)
     spinning = [m.coordinate for m in t.mechanism.motions if not m.prescribed]
-    chosen = [t.coordinates.index(name) for name in (spinning if independent is None else independent)]
-    able = np.setdiff1d(np.arange(len(q)), chosen)
+    independent_indices = [t.coordinates.index(name) for name in (spinning if independent is None else independent)]
+    able = np.setdiff1d(np.arange(len(q)), independent_indices)
     D = able[_pivots(Phi_q[rows][:, able])].tolist()  # q = [q_I; q_D] (eq. 12)
     if len(D) < len(rows) or (independent is not None and len(D) < len(able)):
         raise MechanismError(

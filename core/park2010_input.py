@@ -99,18 +99,18 @@ def tree(mechanism: Mechanism) -> Tree:
         coordinates.extend(coordinate_names(joint)[::way])
         screw.extend(way * s for _, s in SCREWS[joint.kind][::way])
 
-    placed = {GROUND}
+    placed_bodies = {GROUND}
     waiting, cuts = [j for j in mechanism.joints if not j.cut], [j for j in mechanism.joints if j.cut]
-    while joint := next((j for j in waiting if j.parent in placed or j.child in placed), None):
+    while joint := next((j for j in waiting if j.parent in placed_bodies or j.child in placed_bodies), None):
         waiting.remove(joint)
-        if joint.parent in placed and joint.child in placed:
+        if joint.parent in placed_bodies and joint.child in placed_bodies:
             cuts.append(joint)
         else:
-            forward = joint.parent in placed
+            forward = joint.parent in placed_bodies
             new = joint.child if forward else joint.parent
             hang(joint, forward, bodies[new])
-            placed.add(new)
-    if missing := sorted(bodies.keys() - placed):
+            placed_bodies.add(new)
+    if missing := sorted(bodies.keys() - placed_bodies):
         raise MechanismError(
             f"body {missing[0]!r}: no joint connects it to the ground; add one (a free joint if it floats)"
         )

@@ -52,11 +52,13 @@ class Linear:
 def rates(t: Tree, q: Array) -> tuple[Array, Array]:
     """v and v̇ (n,) of the steady state at q: those of the motions, those that the loops impose, else 0."""
     v, dv = np.zeros((2, len(q)))
-    moved = [t.coordinates.index(m.coordinate) for m in t.mechanism.motions]
-    v[moved], dv[moved] = ([getattr(m, name) for m in t.mechanism.motions] for name in ("rate", "acceleration"))
+    prescribed = [t.coordinates.index(m.coordinate) for m in t.mechanism.motions]
+    v[prescribed], dv[prescribed] = (
+        [getattr(m, name) for m in t.mechanism.motions] for name in ("rate", "acceleration")
+    )
     if t.cuts:
         _, J = poses(t, q)
-        following = np.setdiff1d(np.arange(len(q)), moved)
+        following = np.setdiff1d(np.arange(len(q)), prescribed)
         Phi_q = cut_joints(t) @ transformation(t, J).real
         pinv = np.linalg.pinv(Phi_q[:, following], rcond=_RANK)
         v[following] = -pinv @ Phi_q @ v
@@ -172,6 +174,6 @@ def modes(linear: Linear) -> tuple[Array, Array]:
     n = len(linear.K)
     upper_rows = -np.linalg.solve(linear.K, np.hstack([linear.C, linear.M]))
     mu, vectors = np.linalg.eig(np.vstack([upper_rows, np.eye(n, 2 * n)]))
-    keep = np.flatnonzero((np.imag(mu) <= 0.0) & (np.abs(mu) > _RIGID * np.abs(mu).max(initial=0.0)))
-    keep = keep[np.argsort(-np.abs(mu[keep]))]
-    return 1.0 / mu[keep], vectors[:n, keep]
+    selected = np.flatnonzero((np.imag(mu) <= 0.0) & (np.abs(mu) > _RIGID * np.abs(mu).max(initial=0.0)))
+    selected = selected[np.argsort(-np.abs(mu[selected]))]
+    return 1.0 / mu[selected], vectors[:n, selected]

@@ -78,13 +78,13 @@ def ranked(
         u, s, vt = scipy.linalg.svd(scaled)
     except np.linalg.LinAlgError:  # divide and conquer, six times as fast, may fail to converge
         u, s, vt = scipy.linalg.svd(scaled, lapack_driver="gesvd")
-    keep = np.zeros(max(m, n), bool)
-    keep[: len(s)] = s > TOLERANCE * s[0]
+    significant = np.zeros(max(m, n), bool)
+    significant[: len(s)] = s > TOLERANCE * s[0]
     if error is not None:
-        keep |= s > np.maximum((np.abs(u.T) @ error) * (np.abs(vt) @ error), n * np.finfo(float).eps * s[0])
+        significant |= s > np.maximum((np.abs(u.T) @ error) * (np.abs(vt) @ error), n * np.finfo(float).eps * s[0])
     u, v = u / row, vt.T * column
-    of_u, of_v = keep[:m], keep[:n]
-    return Ranked(u[:, of_u], s[keep[: len(s)]], v[:, of_v].T, v[:, ~of_v], u[:, ~of_u])
+    of_u, of_v = significant[:m], significant[:n]
+    return Ranked(u[:, of_u], s[significant[: len(s)]], v[:, of_v].T, v[:, ~of_v], u[:, ~of_u])
 
 
 def check_finite(A: Array) -> None:

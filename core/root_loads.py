@@ -150,5 +150,7 @@ def on_hub(mesh: Mesh, state: Steady, omega: float, gravity: Array, point: Array
         f[joint.link] = 0.0
     carried = gathered(Links(mesh.parent, sp.adjoint(sp.inverse(relative)), np.zeros((0, 6, 6))), f, g)
     first = mesh.parent == 0
-    held = g[0] + (f[first, :6] + carried[first, :6] - f[first, 6:12]).sum(0)  # what the hub applies, in node 0's axes
-    return -sp.adjoint(sp.inverse(nodes[0]) @ sp.pose(np.eye(3), point)).T @ held
+    wrench = g[0] + (f[first, :6] + carried[first, :6] - f[first, 6:12]).sum(
+        0
+    )  # what the hub applies, in node 0's axes
+    return -sp.adjoint(sp.inverse(nodes[0]) @ sp.pose(np.eye(3), point)).T @ wrench

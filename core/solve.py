@@ -75,7 +75,7 @@ def sweep(
     meshes = Meshes(body, Options(count, effects, gravity), mass, stiffness, load)
     starts: Starts = {}
     for omega in _checked(omegas, count):
-        begun = time.perf_counter()
+        start_time = time.perf_counter()
         if abs(omega) > meshes.grading_speed:  # the graded mesh is made for a range of speeds, up to a power of two
             meshes, starts = replace(meshes, grading_speed=2.0 ** np.ceil(np.log2(abs(omega)))), {}
         with one_thread():
@@ -89,7 +89,7 @@ def sweep(
                 f"omega: {omega:.6g} rad/s: steady strain {result.strain:.0%}: too large for linear elastic sections: the "
                 "speed is too high or the blade too soft; check units, or allow large strains"
             )
-        yield replace(result, seconds=time.perf_counter() - begun)
+        yield replace(result, seconds=time.perf_counter() - start_time)
 
 
 def mesh_sweep(
@@ -139,10 +139,10 @@ def _at_one_speed(
     def modes(blade: Blade, omega: float, /, *args: P.args, **kwargs: P.kwargs) -> Modes:
         return next(swept(blade, [omega], *args, **kwargs))
 
-    given = signature(swept)
-    blade, _, *others = given.parameters.values()
+    original = signature(swept)
+    blade, _, *rest = original.parameters.values()
     speed = Parameter("omega", Parameter.POSITIONAL_OR_KEYWORD, annotation=float)
-    modes.__dict__["__signature__"] = given.replace(parameters=(blade, speed, *others), return_annotation=Modes)
+    modes.__dict__["__signature__"] = original.replace(parameters=(blade, speed, *rest), return_annotation=Modes)
     modes.__doc__ = f"The modes at one speed ``omega``, rad/s; other arguments and errors as for ``{swept.__name__}``."
     return modes
 

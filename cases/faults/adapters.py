@@ -16,14 +16,14 @@ from .alterations import answered
 from .seeding import Fault, Trial
 from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 
-Asked = tuple[float, int, int]
+CodeRun = tuple[float, int, int]
 
 
 def altered_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     """The code solves a different blade."""
 
     def make(original: Any) -> Any:
-        def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+        def faulty(name: str, blade: Blade, runs: Sequence[CodeRun], *how: Any) -> list[Answer]:
             return original(name, alter(blade), runs, *how)
 
         return faulty
@@ -31,11 +31,11 @@ def altered_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
     return make
 
 
-def altered_question(alter: Callable[[Asked], Asked]) -> Callable[[Any], Any]:
+def altered_question(alter: Callable[[CodeRun], CodeRun]) -> Callable[[Any], Any]:
     """A different question is asked; the answer claims to be for the original one."""
 
     def make(original: Any) -> Any:
-        def faulty(name: str, blade: Blade, runs: Sequence[Asked], *how: Any) -> list[Answer]:
+        def faulty(name: str, blade: Blade, runs: Sequence[CodeRun], *how: Any) -> list[Answer]:
             answers = original(name, blade, [alter(run) for run in runs], *how)
             return [
                 answer if isinstance(answer, Failure) else replace(answer, omega=run[0], elements=run[1])

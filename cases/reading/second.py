@@ -4,7 +4,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ...core.blade import Blade
-from ...references.readers import Asked, NotInstalledError, NotReadError, Stations, read
+from ...references.readers import NotInstalledError, NotReadError, ReadingOptions, Stations, read
 from ..input.readers import Mount, Source
 from .comparison import Property, compare
 
@@ -44,7 +44,7 @@ def read_again(blade: Blade, path: Path, source: Source, mount: Mount) -> Second
     files = tuple(file for file in source.files if file != path)
     multipliers, offsets = mount.multipliers, mount.offsets is not False
     try:
-        stations = read(source.format, path, Asked(files, mount.length, mount.subset, multipliers, offsets))
+        stations = read(source.format, path, ReadingOptions(files, mount.length, mount.subset, multipliers, offsets))
     except NotInstalledError as error:
         return SecondReading("", missing=str(error))
     except NotReadError as error:

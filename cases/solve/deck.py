@@ -11,7 +11,7 @@ from ...core.effects import Effects
 from ...core.solve import sweep
 from ...references.protocol.interface import Deck
 from ...references.protocol.process import Limits
-from ...references.protocol.worker import Run as Asked
+from ...references.protocol.worker import Run as CodeRun
 from ...references.protocol.worker import answers
 from ..judge.cells import Head, Rows, join, joined
 from ..judge.refined import refined
@@ -48,7 +48,7 @@ def deck_code(
         core: the references at each speed.
     """
 
-    def ask(runs: Sequence[Asked]) -> list[Answer]:
+    def ask(runs: Sequence[CodeRun]) -> list[Answer]:
         return of_blades(answers(name, blade, runs, limits, head.version, deck))
 
     speeds, count = [omega for omega, _ in core], max(r.core.count for _, r in core)

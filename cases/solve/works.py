@@ -7,7 +7,7 @@ from ...core.blade import Blade
 from ...core.effects import Effects
 from ...core.element.measures import Measure
 from ...references.protocol.process import Failure, Limits
-from ...references.protocol.worker import Run as Asked
+from ...references.protocol.worker import Run as CodeRun
 from ...references.protocol.worker import answers
 from ..input.schema import Discretisation
 from ..judge.cells import Head, Rows, join, joined
@@ -34,7 +34,7 @@ def refined_code(
 ) -> Rows:
     """Rows of a code, refined until it can be judged; a copy of core's discretisation is recognised."""
 
-    def ask(runs: Sequence[Asked]) -> list[Answer]:
+    def ask(runs: Sequence[CodeRun]) -> list[Answer]:
         return of_blades(answers(name, blade, runs, limits, head.version))
 
     solved = refinements(ask, refining, core)
@@ -52,7 +52,7 @@ def refined_code(
 def as_in_source(head: Head, blade: Blade, source: Discretisation, core: References) -> Rows:
     """Rows of core with the discretisation of a source."""
 
-    def ask(runs: Sequence[Asked]) -> list[Answer]:
+    def ask(runs: Sequence[CodeRun]) -> list[Answer]:
         return of_blades(core_solver.answers(blade, runs, source.mass, source.stiffness, source.effects))
 
     refining = core_solver.as_given(source)
@@ -69,7 +69,7 @@ def same_code(
         scaled = core_solver.rescaled(blade, scale)
         return of_blades(core_solver.answers(scaled, runs(elements), "half_end", "body_fixed", effects))
 
-    def runs(elements: int) -> list[Asked]:
+    def runs(elements: int) -> list[CodeRun]:
         return [(omega, elements, r.core.count) for omega, r in core]
 
     elements = min(ELEMENTS, finest)

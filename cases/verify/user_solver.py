@@ -16,7 +16,7 @@ from ...core.effects import ALL_EFFECTS, Effects
 from ...core.modes import STATIONS, Modes
 from ...references.protocol.description import Description
 from ...references.protocol.process import Failure, Limits
-from ...references.protocol.worker import Run as Asked
+from ...references.protocol.worker import Run as CodeRun
 from ..input.schema import Case, Compare, Variant
 from ..judge.cells import Head, Rows, joined
 from ..judge.refined import refined
@@ -121,7 +121,7 @@ def _rows(head: Head, solver: UserSolver, variant: Variant, compare: Compare, co
     return cells + _printed(cells, solver, variant, compare, core), levels
 
 
-def _answers(solver: UserSolver, blade: Blade, runs: Sequence[Asked]) -> list[Answer]:
+def _answers(solver: UserSolver, blade: Blade, runs: Sequence[CodeRun]) -> list[Answer]:
     """Answers of the solver; an invalid return value is a failure.
 
     Raises:

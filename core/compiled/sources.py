@@ -8,7 +8,7 @@ CORE = Path(__file__).resolve().parents[1]
 
 def digest() -> str:
     """SHA-256 of names and contents of all C++ files of core."""
-    made = sha256()
+    checksum = sha256()
     for path in sorted(path for pattern in ("*/*.hpp", "*/*.cpp") for path in CORE.glob(pattern)):
-        made.update(path.relative_to(CORE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
-    return made.hexdigest()
+        checksum.update(path.relative_to(CORE).as_posix().encode() + b"\0" + path.read_bytes() + b"\0")
+    return checksum.hexdigest()

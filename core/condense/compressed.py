@@ -48,7 +48,7 @@ def mesh_from_segments(segments: Sequence[Segment], root: Array) -> Mesh:
     for x in undeformed:
         nodes.append(nodes[-1] @ x)
     centres, bodies = _centred(np.array([s.inertia for s in segments]))
-    none = np.zeros((n, 6, 6))
+    zeros = np.zeros((n, 6, 6))
     return Mesh(
         nodes=np.array(nodes),
         lumps=np.zeros((n + 1, 6, 6)),
@@ -56,7 +56,7 @@ def mesh_from_segments(segments: Sequence[Segment], root: Array) -> Mesh:
             law=constant_strain("corotational", undeformed),
             stiffness=bm.end_stiffness("corotational", undeformed, np.array([s.stiffness for s in segments])),
             points=bm.carried_points(
-                undeformed, np.arange(n), centres, np.array([s.body_twist for s in segments]), none, bodies
+                undeformed, np.arange(n), centres, np.array([s.body_twist for s in segments]), zeros, bodies
             ),
             preload=np.zeros((n, 6)),
             internal_preload=np.zeros((n, 6)),
@@ -95,13 +95,15 @@ def segment_modes(
             "or the blade too soft; check units, or allow large strains"
         )
     m = len(fine.frequencies)
-    unknown = replace(fine, uncertainty=np.full(m, np.inf))
+    without_estimate = replace(fine, uncertainty=np.full(m, np.inf))
     if len(segments) < 4:
-        return unknown
-    half = joined(segments)
-    levels = [chain_modes(mesh_from_segments(s, root), omega, m).frequencies for s in (joined(half), half)]
+        return without_estimate
+    half_as_many = joined(segments)
+    levels = [
+        chain_modes(mesh_from_segments(s, root), omega, m).frequencies for s in (joined(half_as_many), half_as_many)
+    ]
     if min(len(f) for f in levels) < m:
-        return unknown
+        return without_estimate
     uncertainty = accuracy.estimate(np.array([*levels, fine.frequencies]), order=2).of_finest
     return replace(fine, uncertainty=uncertainty + fine.rounding)
 

@@ -41,17 +41,17 @@ class Condensed:
     displacements: Array
 
 
-def condense(fe_model: FiniteElements, tied: Sequence[Tie]) -> Condensed:
+def condense(fe_model: FiniteElements, sections: Sequence[Tie]) -> Condensed:
     """Eliminate statically all freedoms but the twists of the tied frames.
 
     Raises:
         CondensationError: a freedom in two rigid ties, or unsupported freedoms.
     """
-    n, m = len(fe_model.directions), len(tied)
+    n, m = len(fe_model.directions), len(sections)
     follow = np.zeros((n, 6 * m))
     rigidly_tied = np.zeros(n, bool)
     means = []
-    for k, t in enumerate(tied):
+    for k, t in enumerate(sections):
         columns = slice(6 * k, 6 * k + 6)
         if t.kind == "average":
             row = np.zeros((6, n))
@@ -114,7 +114,7 @@ def segment(fe_model: FiniteElements, a: Tie, b: Tie) -> Segment:
     )
 
 
-def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Array) -> list[Segment]:
+def segments_in_place(fe_model: FiniteElements, sections: Sequence[Tie], masses: Array) -> list[Segment]:
     """Condense every segment of a blade in place between its neighbours, so that sections warp and contract as in the blade.
 
     The blade is clamped at its first tie and loaded at its last by six wrenches. Between them, average ties measure the
@@ -123,38 +123,38 @@ def segments_in_place(fe_model: FiniteElements, tied: Sequence[Tie], masses: Arr
 
     Args:
         fe_model: the whole blade.
-        tied: m + 1 sections from the root to the tip: rigid at a clamped root, average at all others.
+        sections: m + 1 sections from the root to the tip: rigid at a clamped root, average at all others.
         masses: (m, n) lumped mass of each segment at the model's freedoms; two segments share that of their common section.
 
     Raises:
         CondensationError: as ``condense``; an inner section that is not average; no mass; an invalid flexibility.
     """
-    if bad := [t.name for t in tied[1:-1] if t.kind != "average"]:
+    if rigid := [t.name for t in sections[1:-1] if t.kind != "average"]:
         raise CondensationError(
-            f"section {bad[0]!r}: a rigid tie prevents warping inside the blade; use an average one"
+            f"section {rigid[0]!r}: a rigid tie prevents warping inside the blade; use an average one"
         )
-    if np.shape(masses) != (len(tied) - 1, len(fe_model.directions)):
+    if np.shape(masses) != (len(sections) - 1, len(fe_model.directions)):
         raise CondensationError(
-            f"masses: shape {np.shape(masses)}, expected {(len(tied) - 1, len(fe_model.directions))}: one row per segment"
+            f"masses: shape {np.shape(masses)}, expected {(len(sections) - 1, len(fe_model.directions))}: one row per segment"
         )
-    c = condense(fe_model, (tied[0], tied[-1]))
+    c = condense(fe_model, (sections[0], sections[-1]))
     displacements, tip = (
         c.displacements[:, 6:],
         c.stiffness[6:, 6:],
     )  # per unit twist of the tip, and its wrenches
-    twists = [t.mean @ displacements[t.freedoms] for t in tied]
+    twists = [t.mean @ displacements[t.freedoms] for t in sections]
     out = []
-    for k, (a, b) in enumerate(pairwise(tied)):
+    for k, (a, b) in enumerate(pairwise(sections)):
         undeformed = ties.seen(a, b)
         rho = sp.adjoint(undeformed) @ twists[k + 1] - twists[k]
-        wrench = sp.adjoint(ties.seen(tied[-1], a)).T @ tip
+        wrench = sp.adjoint(ties.seen(sections[-1], a)).T @ tip
         flexibility = np.linalg.solve(wrench.T, rho.T).T
         size = np.sqrt(np.abs(np.diagonal(flexibility)))
         unit = flexibility / np.outer(size, size)
-        wrong = np.abs(unit - unit.T).max()
-        if wrong > MAX_ASYMMETRY or np.linalg.eigvalsh(unit + unit.T)[0] <= 0:
+        asymmetry = np.abs(unit - unit.T).max()
+        if asymmetry > MAX_ASYMMETRY or np.linalg.eigvalsh(unit + unit.T)[0] <= 0:
             raise CondensationError(
-                f"segment {a.name!r} to {b.name!r}: its flexibility is not symmetric (by {wrong:.1e}), or not positive: "
+                f"segment {a.name!r} to {b.name!r}: its flexibility is not symmetric (by {asymmetry:.1e}), or not positive: "
                 "check that its sections are apart by at least one element, and that the ties are of this model"
             )
         J, mean = _body(fe_model, masses[k], a.frame, displacements)

@@ -96,10 +96,10 @@ def assembled(name: str, rows: Index, columns: Index, values: Array, mirror: boo
         raise MatrixFileError(
             f"{name}: the entry of {rows[k].tolist()} and {columns[k].tolist()} is given twice: give one matrix per file"
         )
-    alone = ~np.isin(mirrored, code)
-    if mirror or (mirror is None and (alone | (i == j)).all()):
-        i, j = np.append(i, j[alone]), np.append(j, i[alone])
-        values = np.append(values, values[alone])
+    unpaired = ~np.isin(mirrored, code)
+    if mirror or (mirror is None and (unpaired | (i == j)).all()):
+        i, j = np.append(i, j[unpaired]), np.append(j, i[unpaired])
+        values = np.append(values, values[unpaired])
     return labelled(name, ss.csr_array((values, (i, j)), shape=(n, n)), freedoms)
 
 
@@ -110,10 +110,10 @@ def labelled(name: str, matrix: ss.csr_array, freedoms: Index) -> Exported:
         MatrixFileError: a component that is not a motion of a point.
     """
     nodes, components = freedoms.T
-    bad = (components < 1) | (components > 6)
-    if bad.any():
+    invalid = (components < 1) | (components > 6)
+    if invalid.any():
         raise MatrixFileError(
-            f"{name}: freedom {components[bad][0]} of node {nodes[bad][0]}: only 1 to 6 are motions of a point; "
+            f"{name}: freedom {components[invalid][0]} of node {nodes[invalid][0]}: only 1 to 6 are motions of a point; "
             "export a static (Guyan) reduction, without modes or other unknowns"
         )
     return Exported(name, matrix, nodes, components - 1)

@@ -70,10 +70,10 @@ def between(stiffness: Array, undeformed: Array, name: str) -> Array:
             f"{MOTIONS[i % 6]} of frame {'ab'[i // 6]}; check the sign and order of freedoms, and that each has a stiffness"
         )
     unit = k / np.sqrt(np.outer(diagonal, diagonal))
-    wrong = np.abs(unit - unit.T).max()
-    if wrong > SYMMETRY_TOLERANCE:
+    asymmetry = np.abs(unit - unit.T).max()
+    if asymmetry > SYMMETRY_TOLERANCE:
         raise CondensationError(
-            f"{where}: not symmetric (by {wrong:.1e}): supply both triangles with equal entries, and rows and "
+            f"{where}: not symmetric (by {asymmetry:.1e}): supply both triangles with equal entries, and rows and "
             "columns in the same order"
         )
     lowest = np.linalg.eigvalsh(unit)[0]
@@ -128,8 +128,8 @@ def segment_from_matrix(stiffness: Array, undeformed: Array, inertia: Array, nam
     slices = np.repeat(np.eye(4)[None], len(t), axis=0)
     slices[:, :3, 3] = t[:, None] * undeformed[:3, 3]
     lever = sp.adjoint(slices)
-    spread = np.einsum("q,qij,qkl->ikjl", weight, lever, lever).reshape(36, 36)
-    c = np.linalg.solve(spread, np.linalg.inv(k).ravel()).reshape(6, 6)
+    integral = np.einsum("q,qij,qkl->ikjl", weight, lever, lever).reshape(36, 36)
+    c = np.linalg.solve(integral, np.linalg.inv(k).ravel()).reshape(6, 6)
     twists = np.einsum("qp,pij->qij", within, lever @ c @ np.swapaxes(lever, -1, -2)) @ k
     line = np.diag([1.0, 1.0, 1.0, 0.0, 0.0, 0.0])
     line[3:, 3:] = np.outer(undeformed[:3, 3], undeformed[:3, 3])  # rotation about the line is averaged separately

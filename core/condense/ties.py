@@ -73,10 +73,10 @@ class FiniteElements:
         diagonal = self.stiffness.diagonal()
         unit = scipy.sparse.diags_array(1.0 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0)))
         scaled = unit @ self.stiffness @ unit
-        wrong = float(abs(scaled - scaled.T).max()) if n else 0.0
-        if wrong > ASYMMETRY:
+        asymmetry = float(abs(scaled - scaled.T).max()) if n else 0.0
+        if asymmetry > ASYMMETRY:
             raise CondensationError(
-                f"{self.name}: stiffness is not symmetric (by {wrong:.1e}): supply both triangles, without follower loads"
+                f"{self.name}: stiffness is not symmetric (by {asymmetry:.1e}): supply both triangles, without follower loads"
             )
 
 
@@ -152,10 +152,10 @@ def section(fe_model: FiniteElements, frame: Array, name: str, kind: Kind = "ave
     Raises:
         CondensationError: no nodes (the message gives the distance of the nearest), or too few.
     """
-    away = (fe_model.points - frame[:3, 3]) @ frame[:3, 0]
-    on_section = np.abs(away) < ON_SECTION * np.ptp(fe_model.points, axis=0).max()
+    distance = (fe_model.points - frame[:3, 3]) @ frame[:3, 0]
+    on_section = np.abs(distance) < ON_SECTION * np.ptp(fe_model.points, axis=0).max()
     if not on_section.any():
-        nearest = away[np.abs(away).argmin()] if len(away) else np.inf
+        nearest = distance[np.abs(distance).argmin()] if len(distance) else np.inf
         raise CondensationError(
             f"section {name!r}: no nodes of {fe_model.name} in its plane, the nearest are {nearest:g} m from it: "
             "check the station and its unit; put sections where the mesh has a layer of nodes"

@@ -16,12 +16,14 @@ CLAMPED: Array = np.full(6, np.inf)
 """Stiffness of a joint that connects rigidly."""
 
 
-def hub(like: Mesh, pose: Array) -> Mesh:
-    """A tree without links: node 0, fixed to the rotating hub at ``pose`` (4, 4); for branches of the kind of ``like``."""
-    none = slice(0, 0)
-    b = like.beams
-    beams = Beams(part(b.law, none), b.stiffness[none], _sliced(b.points), b.preload[none], b.internal_preload[none])
-    return Mesh(pose[None], np.zeros((1, 6, 6)), beams, _sliced(like.samples), 0.0, np.zeros((1, 3)))
+def hub(template: Mesh, pose: Array) -> Mesh:
+    """A tree without links: node 0, fixed to the rotating hub at ``pose`` (4, 4); for branches of the kind of ``template``."""
+    empty = slice(0, 0)
+    b = template.beams
+    beams = Beams(
+        part(b.law, empty), b.stiffness[empty], _sliced(b.points), b.preload[empty], b.internal_preload[empty]
+    )
+    return Mesh(pose[None], np.zeros((1, 6, 6)), beams, _sliced(template.samples), 0.0, np.zeros((1, 3)))
 
 
 def attached(
@@ -55,22 +57,22 @@ def attached(
     between[-1] = between[-1] @ to_branch
     screws[0] = sp.adjoint(at_a) @ screws[0]
     frame = tree.nodes[node] @ at_a
-    moved = frame @ to_branch @ sp.inverse(branch.nodes[0])
-    none, inside = np.zeros((count, 6)), count - 1  # nodes between the joint's links, without mass
+    to_tree = frame @ to_branch @ sp.inverse(branch.nodes[0])
+    zeros, inside = np.zeros((count, 6)), count - 1  # nodes between the joint's links, without mass
     beams = Beams(
         law=joined([a.law, constant_strain(b.law.measure, between), b.law]),
         stiffness=np.concatenate([a.stiffness, np.zeros((count, 6, 6)), b.stiffness]),
         points=_together(a.points, b.points, links + count),
-        preload=np.concatenate([a.preload, none, b.preload]),
-        internal_preload=np.concatenate([a.internal_preload, none, b.internal_preload]),
+        preload=np.concatenate([a.preload, zeros, b.preload]),
+        internal_preload=np.concatenate([a.internal_preload, zeros, b.internal_preload]),
     )
     return Mesh(
-        nodes=np.concatenate([tree.nodes, np.tile(frame, (inside, 1, 1)), moved @ branch.nodes]),
+        nodes=np.concatenate([tree.nodes, np.tile(frame, (inside, 1, 1)), to_tree @ branch.nodes]),
         lumps=np.concatenate([tree.lumps, np.zeros((inside, 6, 6)), branch.lumps]),
         beams=beams,
         samples=_together(tree.samples, branch.samples, links + count),
         scale=max(tree.scale, branch.scale),
-        force=np.concatenate([tree.force, np.zeros((inside, 3)), branch.force @ moved[:3, :3].T]),
+        force=np.concatenate([tree.force, np.zeros((inside, 3)), branch.force @ to_tree[:3, :3].T]),
         corner=np.concatenate([tree.corner, np.tile(np.eye(4), (count, 1, 1)), branch.corner]),
         parent=np.concatenate([tree.parent, [node], nodes + np.arange(inside), branch.parent + nodes + inside]),
         joints=(

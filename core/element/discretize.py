@@ -161,5 +161,5 @@ def _halves(blade: Blade, nodes: Array) -> tuple[NDArray[np.intp], Array, Array]
 
 
 def _samples(seg: StaticSolution) -> Points:
-    none = np.zeros((len(seg.at_element), 6, 6))
-    return bm.carried_points(seg.undeformed, seg.at_element, seg.at_pose, seg.at_shape, seg.at_bubble, none)
+    zeros = np.zeros((len(seg.at_element), 6, 6))
+    return bm.carried_points(seg.undeformed, seg.at_element, seg.at_pose, seg.at_shape, seg.at_bubble, zeros)

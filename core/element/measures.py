@@ -108,8 +108,8 @@ def response(law: StrainLaw, x: Array, beta: Array, s: Array | None = None, on_e
 
     ``s`` and ``on_eta`` (n, 6) are the constant forces of ``Response.curvature``, zero by default.
     """
-    none = np.zeros((len(x), 6))
-    force, conjugate = (none if v is None else np.ascontiguousarray(v) for v in (s, on_eta))
+    zeros = np.zeros((len(x), 6))
+    force, conjugate = (zeros if v is None else np.ascontiguousarray(v) for v in (s, on_eta))
     return Response(*kernels.respond(law.arrays, np.ascontiguousarray(x), np.ascontiguousarray(beta), force, conjugate))
 
 

@@ -195,9 +195,9 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     interval = np.clip(np.searchsorted(points.start, at, side="right") - 1, 0, None)
     until = partial_weights(GAUSS, (at - points.start[interval]) / h[interval])
     n = len(nodes) - 1
-    placed, inside, at_points = np.split(frames(blade, np.concatenate([nodes, s.ravel(), at])), [n + 1, n + 1 + s.size])
-    ends = frames(blade, nodes[1:], root_side=True) if blade.kinks else placed[1:]
-    to_first = sp.inverse(placed[:-1])
+    poses, inside, at_points = np.split(frames(blade, np.concatenate([nodes, s.ravel(), at])), [n + 1, n + 1 + s.size])
+    ends = frames(blade, nodes[1:], root_side=True) if blade.kinks else poses[1:]
+    to_first = sp.inverse(poses[:-1])
     pose = to_first[element][:, None] @ inside.reshape(*s.shape, 4, 4)
     undeformed = to_first @ ends
     lever = sp.adjoint(pose)
@@ -205,22 +205,22 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     compliances = lever @ soft @ np.swapaxes(lever, -1, -2)
     start = np.searchsorted(element, np.arange(n))
 
-    def over(weights: Array, values: Array) -> Array:
+    def weighted_sums(weights: Array, values: Array) -> Array:
         """Weighted sums over the Gauss points of each interval, times its length: (i, w, k, l)."""
         sums = weights @ values.reshape(len(values), GAUSS, -1)
         return h[:, None, None, None] * sums.reshape(len(values), len(weights), *values.shape[2:])
 
-    def whole(values: Array) -> Array:
+    def element_integral(values: Array) -> Array:
         """Integral over each element."""
-        return np.add.reduceat(over(b[None], values)[:, 0], start, axis=0)
+        return np.add.reduceat(weighted_sums(b[None], values)[:, 0], start, axis=0)
 
     def running(values: Array) -> tuple[Array, Array, Array]:
         """Integral from the element's start to its Gauss points and to the points ``at``, and over the whole element."""
-        parts = over(b[None], values)[:, 0]
-        begun = np.cumsum(parts, axis=0) - parts
-        begun -= begun[start][element]
-        up_to_at = begun[interval] + np.einsum("m,mq,mqkl->mkl", h[interval], until, values[interval])
-        return begun[:, None] + over(a, values), up_to_at, np.add.reduceat(parts, start, axis=0)
+        parts = weighted_sums(b[None], values)[:, 0]
+        before = np.cumsum(parts, axis=0) - parts
+        before -= before[start][element]
+        up_to_at = before[interval] + np.einsum("m,mq,mqkl->mkl", h[interval], until, values[interval])
+        return before[:, None] + weighted_sums(a, values), up_to_at, np.add.reduceat(parts, start, axis=0)
 
     within, up_to_at, flexibility = running(compliances)
     stiffness = np.linalg.inv(flexibility)
@@ -234,7 +234,7 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
     compliant, up_to_at, tip = running(compliances @ carried)
     bubble = compliant.reshape(-1, 6, 6) - shape @ tip[q]
     at_bubble = up_to_at - at_shape @ tip[at_element]
-    work = whole(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
+    work = element_integral(np.swapaxes(load, -1, -2) @ bubble.reshape(load.shape))
     unit = _unit_stiffness(work)
     local = soft @ np.swapaxes(lever, -1, -2)  # the sections' strain from a wrench at a
     loaded = (local @ (carried - (stiffness @ tip)[element][:, None])) @ unit[element][:, None]
@@ -258,11 +258,11 @@ def integrate(blade: Blade, nodes: Array, at: Array | None = None) -> StaticSolu
         at_pose=to_first[at_element] @ at_points,
         at_shape=at_shape,
         at_bubble=at_bubble @ unit[at_element],
-        nodes=placed,
+        nodes=poses,
         undeformed=undeformed,
-        shortening=whole(bow),
-        mean=whole(strain),
-        slope=whole(uneven),
+        shortening=element_integral(bow),
+        mean=element_integral(strain),
+        slope=element_integral(uneven),
     )
 
 

@@ -175,11 +175,11 @@ def check_mechanism(m: Mechanism) -> None:
     if GROUND in names:
         raise MechanismError("body 'ground': the name of the inertial frame; choose another")
     declared = {GROUND, *names}
-    used = [(f"joint {j.name!r}", n) for j in m.joints for n in (j.parent, j.child)]
-    used += [("spring", n) for s in m.springs for n in (s.body_a, s.body_b)]
-    used += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b, b.axes_of)]
-    used += [("load", n) for f in m.loads for n in (f.body, f.axes_of)]
-    for label, name in used:
+    references = [(f"joint {j.name!r}", n) for j in m.joints for n in (j.parent, j.child)]
+    references += [("spring", n) for s in m.springs for n in (s.body_a, s.body_b)]
+    references += [("beam", n) for b in m.beams for n in (b.body_a, b.body_b, b.axes_of)]
+    references += [("load", n) for f in m.loads for n in (f.body, f.axes_of)]
+    for label, name in references:
         if name not in declared:
             raise MechanismError(f"{label}: body {name!r} is unknown; there are {', '.join(sorted(declared))}")
     moving = [x.coordinate for x in m.motions]
@@ -199,5 +199,5 @@ def check_mechanism(m: Mechanism) -> None:
     for b in m.bodies:
         if b.inertia.shape != (6, 6) or not np.isfinite(b.inertia).all():
             raise MechanismError(f"body {b.name!r}: its inertia must be a finite 6×6 matrix; build it with inertia()")
-        if b.inertia.any() and (wrong := body_fault(b.inertia, "kg")):
-            raise MechanismError(f"body {b.name!r}: inertia: {wrong}")
+        if b.inertia.any() and (problem := body_fault(b.inertia, "kg")):
+            raise MechanismError(f"body {b.name!r}: inertia: {problem}")

@@ -68,13 +68,13 @@ def at(x: float = 0.0, y: float = 0.0, z: float = 0.0, *, axis: str | Array = "z
     Raises:
         ValueError: for an axis without direction or of an unknown name.
     """
-    named = {"x": 0, "y": 1, "z": 2}
+    axis_index = {"x": 0, "y": 1, "z": 2}
     if isinstance(axis, str):
-        if axis.lstrip("-") not in named:
+        if axis.lstrip("-") not in axis_index:
             raise ValueError(
                 f"axis: {axis!r}: give x, y or z (with a minus sign if reversed), or a vector of three components"
             )
-        vector = np.eye(3)[named[axis.lstrip("-")]] * (-1.0 if axis.startswith("-") else 1.0)
+        vector = np.eye(3)[axis_index[axis.lstrip("-")]] * (-1.0 if axis.startswith("-") else 1.0)
     else:
         vector = np.asarray(axis, float)
     length = np.linalg.norm(vector)

@@ -37,8 +37,8 @@ def compared(system: Periodic) -> Compared:
     """
     by_integration, by_harmonics = floquet(system), hill(system)
     omega = abs(system.omega)
-    apart = distance(by_integration.multipliers, by_harmonics.multipliers) * omega / (2.0 * np.pi)
-    difference = float(apart.max(initial=0.0))
+    distances = distance(by_integration.multipliers, by_harmonics.multipliers) * omega / (2.0 * np.pi)
+    difference = float(distances.max(initial=0.0))
     allowed = max(
         LARGEST_DIFFERENCE * omega,
         10.0 * float(by_integration.error.max(initial=0.0) + by_harmonics.error.max(initial=0.0)),

@@ -77,10 +77,10 @@ def _converged(system: Periodic, half_turn: Array | None, accuracy: float) -> Ex
 
 def distance(a: Complex, b: Complex) -> Array:
     """(m,) relative distance of each of the multipliers b (m,) from its partner among a (m,); pairs have the least sum."""
-    apart = np.abs(a[:, None] - b[None, :]) / np.sqrt(np.abs(a)[:, None] * np.abs(b)[None, :])
-    rows, columns = linear_sum_assignment(apart)
+    distances = np.abs(a[:, None] - b[None, :]) / np.sqrt(np.abs(a)[:, None] * np.abs(b)[None, :])
+    rows, columns = linear_sum_assignment(distances)
     out = np.empty(len(b))
-    out[columns] = apart[rows, columns]
+    out[columns] = distances[rows, columns]
     return out
 
 

@@ -101,15 +101,15 @@ def refined(
     require_rotation(system)
     top, n = len(shape) // 2, shape.shape[1]
     order = np.arange(-top, top + 1)
-    kept = np.ones(shape.shape, bool) if half_turn is None else (-1.0) ** order[:, None] == half_turn
+    allowed = np.ones(shape.shape, bool) if half_turn is None else (-1.0) ** order[:, None] == half_turn
     size = np.abs(shape * np.sqrt(np.diagonal(system.mean[0]))).max(1)
     H = max(2, *(np.abs(order[size > TAIL * size.max()])).tolist())
     previous, change = None, np.inf
     p: Complex | None = None
     while n * (2 * H + 1) <= MAX_SPARSE and top >= H:
-        about = slice(top - H, top + H + 1)
-        guess = shape[about] if p is None else np.pad(p, ((H - len(p) // 2,) * 2, (0, 0)))
-        value, p = _newton(system, value, guess, kept[about])
+        window = slice(top - H, top + H + 1)
+        guess = shape[window] if p is None else np.pad(p, ((H - len(p) // 2,) * 2, (0, 0)))
+        value, p = _newton(system, value, guess, allowed[window])
         if previous is not None:
             change = abs(value - previous)
             if change <= accuracy * abs(system.omega):
@@ -120,15 +120,15 @@ def refined(
     )
 
 
-def _newton(system: Periodic, s: complex, shape: Complex, kept: NDArray[np.bool_]) -> tuple[complex, Complex]:
-    """A solution (s, p) of Hill's equations with the ``kept`` harmonics; p's component along the first guess remains."""
+def _newton(system: Periodic, s: complex, shape: Complex, allowed: NDArray[np.bool_]) -> tuple[complex, Complex]:
+    """A solution (s, p) of Hill's equations with the ``allowed`` harmonics; p's component along the first guess remains."""
     H, n = len(shape) // 2, shape.shape[1]
-    rows, columns, (M, C, K) = _sparse(system, kept)
-    D = np.repeat(1j * np.arange(-H, H + 1) * system.omega, n)[kept.ravel()]
-    p = shape[kept] / np.linalg.norm(shape[kept])
+    rows, columns, (M, C, K) = _sparse(system, allowed)
+    D = np.repeat(1j * np.arange(-H, H + 1) * system.omega, n)[allowed.ravel()]
+    p = shape[allowed] / np.linalg.norm(shape[allowed])
     size, along = len(p), p.conj()
-    every, last = np.arange(size), np.full(size, size)
-    at = np.concatenate([rows, every, last]), np.concatenate([columns, last, every])
+    indices, last = np.arange(size), np.full(size, size)
+    at = np.concatenate([rows, indices, last]), np.concatenate([columns, last, indices])
     for _ in range(MAX_STEPS):
         rate = (s + D)[columns]
         equations = scipy.sparse.csr_array((M * rate**2 + C * rate + K, (rows, columns)), (size, size))
@@ -141,7 +141,7 @@ def _newton(system: Periodic, s: complex, shape: Complex, kept: NDArray[np.bool_
         p, s = p + step[:-1], s + complex(step[-1])
         if abs(step[-1]) <= 100.0 * _EPS * max(abs(s), abs(system.omega) * H):
             out = np.zeros(shape.shape, np.complex128)
-            out[kept] = p
+            out[allowed] = p
             return s, out
     raise PeriodicError(f"Hill: Newton's method does not converge near {abs(s):.4g} rad/s")
 
@@ -149,7 +149,7 @@ def _newton(system: Periodic, s: complex, shape: Complex, kept: NDArray[np.bool_
 def _sparse(
     system: Periodic, kept: NDArray[np.bool_]
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], tuple[Complex, Complex, Complex]]:
-    """Rows, columns and values of the blocks M_{j−k}, C_{j−k} and K_{j−k} over the ``kept`` harmonics (2H + 1, n)."""
+    """Rows, columns and values of the blocks M_{j−k}, C_{j−k} and K_{j−k} over the ``allowed`` harmonics (2H + 1, n)."""
     n, top = kept.shape[1], system.harmonics
     number = np.where(kept, np.cumsum(kept).reshape(kept.shape) - 1, -1).ravel()
     rows, columns, values = [], [], []
@@ -188,9 +188,9 @@ def _centred(system: Periodic, H: int) -> tuple[Complex, Complex, float]:
     weight = (np.abs(shapes * root) ** 2).sum(1)
     centre = (order[:, None] * weight).sum(0) / weight.sum(0)
     central = np.flatnonzero(np.abs(centre) < max(1.6, H / 2))
-    chosen = central[_window(centre[central])]
-    largest = float(np.abs(values[chosen]).max(initial=0.0))
-    return values[chosen], shapes[:, :, chosen], 100.0 * _EPS * max(largest, abs(system.omega) * H)
+    selection = central[_window(centre[central])]
+    largest = float(np.abs(values[selection]).max(initial=0.0))
+    return values[selection], shapes[:, :, selection], 100.0 * _EPS * max(largest, abs(system.omega) * H)
 
 
 def _window(centre: Array) -> NDArray[np.intp]:

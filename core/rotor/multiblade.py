@@ -138,9 +138,9 @@ def first_order(A: Array, psi: ArrayLike, omega: float, positions: Blades, rates
         rates: (r, 2) index of a position and of its rate; the blades' first-order states are in no row.
     """
     rate_of: dict[int, int] = {int(p): int(v) for p, v in np.asarray(rates, dtype=np.intp).reshape(-1, 2)}
-    moved = [[rate_of[int(k)] for k in group] for group in positions.groups if int(group[0]) in rate_of]
+    velocities = [[rate_of[int(k)] for k in group] for group in positions.groups if int(group[0]) in rate_of]
     T, inv, R = positions.transformation(psi), positions.inverse(psi), positions.rate()
-    for group in moved:
+    for group in velocities:
         index = np.array(group, dtype=np.intp)
         T[..., index[:, None], index] = transformation(psi, positions.number)
         inv[..., index[:, None], index] = inverse(psi, positions.number)

@@ -164,9 +164,9 @@ def orbit_of(mechanism: Mechanism, spin: str, guess: Mapping[str, float] | None 
 
 def _frozen(mechanism: Mechanism, tree: Tree, spin: str, guess: Mapping[str, float] | None) -> Array:
     """(n,) coordinates of the equilibrium at ψ = 0, from which harmonic balance starts; the guess if there is none."""
-    held = tuple(replace(m, position=0.0) if m.coordinate == spin else m for m in mechanism.motions)
+    motions = tuple(replace(m, position=0.0) if m.coordinate == spin else m for m in mechanism.motions)
     try:
-        return steady_state(compile_tree(replace(mechanism, motions=held)), guess).q
+        return steady_state(compile_tree(replace(mechanism, motions=motions)), guess).q
     except MechanismError:
         q = np.zeros(len(tree.coordinates))
         for name, value in (guess or {}).items():
@@ -212,9 +212,9 @@ def _balanced(orbit: Orbit) -> Orbit:
         orbit = replace(orbit, q=q)
         if length < 1e-13 or (length < 1e-9 and length > 0.5 * previous):
             mean = orbit.q.mean(0)
-            still = np.abs(orbit.q - mean).max(0) <= _STILL * coordinate_units(orbit.tree, orbit.tree.length)
-            still &= orbit.ratios == 0.0
-            return replace(orbit, q=np.where(still, mean, orbit.q))
+            is_constant = np.abs(orbit.q - mean).max(0) <= _STILL * coordinate_units(orbit.tree, orbit.tree.length)
+            is_constant &= orbit.ratios == 0.0
+            return replace(orbit, q=np.where(is_constant, mean, orbit.q))
         previous = length
     raise MechanismError(
         f"no periodic steady state was found near that at ψ = 0: the last step is {previous:.1e} of the mechanism's length "

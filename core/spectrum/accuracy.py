@@ -59,9 +59,9 @@ def estimate(f: Array, order: int) -> Estimate:
     slow = np.clip(np.where(converging, observed, _SLOWEST), _SLOWEST, order)
     gain = 2.0**order - 1.0
     first, second = f[1] + first_step / gain, f[2] + second_step / gain
-    spread = _WARY * np.maximum(np.abs(first_step), np.abs(second_step))
+    change = _WARY * np.maximum(np.abs(first_step), np.abs(second_step))
     expected = np.maximum(np.abs(second_step), np.abs(first_step) / 2.0**order)
-    wary = np.where(converging, _WARY * expected / (2.0**slow - 1.0), spread)
+    wary = np.where(converging, _WARY * expected / (2.0**slow - 1.0), change)
     values = np.where(firm, second, f[2])
     of_values = np.where(firm, np.maximum(np.abs(second - first), np.abs(second_step) / gain), wary) / f[2]
     of_finest = np.where(firm, _FIRM * np.abs(second_step) / gain + np.abs(second - first), wary) / f[2]

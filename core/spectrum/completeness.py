@@ -46,14 +46,14 @@ def check_complete(p: TreePencil, frequencies: Array, next_frequencies: Array, r
     room = min(next_ / last - 1.0, 0.1)
     wide = room > _MIN_GAP
     shift, expected = last * (1.0 + (0.3 * room if wide else distance)), len(frequencies)
-    counted = below(p, shift)
-    if counted > expected or (counted == expected and not wide):
+    actual = below(p, shift)
+    if actual > expected or (actual == expected and not wide):
         shift = last * (1.0 - distance)
         expected = int((frequencies < shift).sum())
-        counted = below(p, shift)
-    if counted != expected:
+        actual = below(p, shift)
+    if actual != expected:
         raise MissedModesError(
-            f"the eigensolver found {expected} natural frequencies below {shift:.9g} rad/s, but there are {counted}: change "
+            f"the eigensolver found {expected} natural frequencies below {shift:.9g} rad/s, but there are {actual}: change "
             "the number of modes or elements; please report this as a bug"
         )
 

@@ -54,8 +54,8 @@ def gyroscopic(M: Array, C: Array, K: Array, count: int | None = None) -> Eigen:
     except np.linalg.LinAlgError:
         raise unstable() from None
     values, vectors = np.linalg.eigh(M)
-    keep = values > MASSLESS * max(values[-1], 0.0)
-    f = scipy.linalg.solve_triangular(root, vectors[:, keep] * np.sqrt(values[keep]), lower=True)
+    with_mass = values > MASSLESS * max(values[-1], 0.0)
+    f = scipy.linalg.solve_triangular(root, vectors[:, with_mass] * np.sqrt(values[with_mass]), lower=True)
     g = scipy.linalg.solve_triangular(root, scipy.linalg.solve_triangular(root, C, lower=True).T, lower=True).T
     n, r = f.shape
     h = np.zeros((n + r, n + r), complex)  # i A⁻¹S in the basis (k⁻ᵀ x, Fᵀ y) with M = F Fᵀ
@@ -148,9 +148,9 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
     M, C, K = (time**p * unit[:, None] * a * unit for p, a in ((0, M), (1, C), (2, K)))
     d = W.shape[1]
     w = np.linalg.qr(W / unit[:, None])[0].T
-    kept = np.arange(n)
+    rows = np.arange(n)
     if d:
-        kept = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
+        rows = cast(tuple[Array, NDArray[np.intp]], scipy.linalg.qr(w, mode="r", pivoting=True))[1][d:]
     massive, massless = _by_mass(M)
     r, s = massive.shape[1], massless.shape[1]  # x = massive p + massless q, and y = λ p; M x λ² = λ M massive y
     zeros, identity = np.zeros((d, n + r)), np.eye(r)
@@ -159,11 +159,11 @@ def damped(M: Array, C: Array, K: Array, count: int | None = None, rigid: tuple[
         [
             [np.zeros((r, n)), identity],
             [-w @ C @ massive, -w @ C @ massless, -w @ M @ massive],
-            [-K[kept] @ massive, -K[kept] @ massless, -C[kept] @ massive],
+            [-K[rows] @ massive, -K[rows] @ massless, -C[rows] @ massive],
         ]
     )
     b = np.block(
-        [[identity, np.zeros((r, s + r))], [zeros], [np.zeros((n - d, r)), C[kept] @ massless, M[kept] @ massive]]
+        [[identity, np.zeros((r, s + r))], [zeros], [np.zeros((n - d, r)), C[rows] @ massless, M[rows] @ massive]]
     )
     try:
         pair, z = cast(tuple[Complex, Complex], scipy.linalg.eig(a, b, homogeneous_eigvals=True))

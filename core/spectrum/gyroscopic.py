@@ -96,10 +96,10 @@ def _nearest_zero(p: TreePencil, count: int) -> tuple[Array, Complex, Array] | N
     rows = np.ascontiguousarray(np.concatenate([x.real, x.imag], axis=1).T)
     kappa, inertia = ((rows * product(a, 1.0, p.links, rows)).sum(1).reshape(2, -1).sum(0) for a in (p.K, p.M))
     m = len(omega)
-    half = (rows[m:] * product(p.C, -1.0, p.links, np.ascontiguousarray(rows[:m]))).sum(1)  # ½i x*Cx
+    coriolis = (rows[m:] * product(p.C, -1.0, p.links, np.ascontiguousarray(rows[:m]))).sum(1)  # ½i x*Cx
     energy = kappa + omega**2 * inertia
     omega = (
-        half + np.sign(energy) * np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0))
+        coriolis + np.sign(energy) * np.sqrt(np.maximum(coriolis**2 + inertia * kappa, 0.0))
     ) / inertia  # Rayleigh quotient
     order = np.argsort(omega)
     return omega[order], (x / np.sqrt(np.abs(kappa)))[:, order], energy[order]

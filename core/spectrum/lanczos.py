@@ -124,11 +124,11 @@ def _start_vectors(p: TreePencil, a: kernels.Operator, warm_start: Start | None,
     y = allowed(p.links, y)
     a.keep_massive(y)
     w[:, n:] = y
-    lost = solve_error(p, w)
-    if not lost < _MAX_SOLVE_ERROR:
+    error = solve_error(p, w)
+    if not error < _MAX_SOLVE_ERROR:
         unstable = "" if p.factor.positive else "not positive definite: the steady state is unstable; or it is "
         raise EigensolverError(
-            f"the stiffness of {len(p.K)} elements is {unstable}dominated by rounding error (of {lost:.1e} in a solution): "
+            f"the stiffness of {len(p.K)} elements is {unstable}dominated by rounding error (of {error:.1e} in a solution): "
             "use fewer elements, or check units"
         )
     if not p.factor.positive:
@@ -160,7 +160,7 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
         EigensolverError: if the basis is full before, or there is no mode.
     """
     limit, width = min(w.shape[1], max(200, 8 * count)), len(w)
-    look, every = (first_look, _LOOK_EVERY_WARM) if first_look else (3 * count + _FIRST_LOOK * width, _LOOK_EVERY)
+    look, interval = (first_look, _LOOK_EVERY_WARM) if first_look else (3 * count + _FIRST_LOOK * width, _LOOK_EVERY)
     basis, projected = np.empty((limit + width, w.shape[1])), np.zeros((look + width, look + width))
     size, last_step = 0, 0
     while True:
@@ -175,7 +175,7 @@ def _converged(a: kernels.Operator, w: Array, count: int, first_look: int | None
         error = np.sqrt(np.maximum(np.diagonal(gram), 0.0) @ (last.real**2 + last.imag**2)) / np.abs(mu)
         if exhausted or (error < _VECTOR_TOLERANCE).all():
             break
-        look = size + every
+        look = size + interval
         projected = np.pad(projected, (0, look + width - len(projected)))
     smallest = 1e-12 * mu.max(initial=0.0)
     positive = mu > smallest
@@ -229,8 +229,9 @@ def _quotients(p: TreePencil, x: Array) -> tuple[Array, Array]:
     m, n = len(x), x.shape[2]
     rows = x.reshape(2 * m, n)
     kappa, inertia = ((rows * product(a, 1.0, p.links, rows)).reshape(m, -1).sum(1) for a in (p.K, p.M))  # x*Kx, x*Mx
-    half = (x[:, 1] * product(p.C, -1.0, p.links, np.ascontiguousarray(x[:, 0]))).sum(1)  # ½i x*Cx, as C is skew
-    return kappa / (np.sqrt(np.maximum(half**2 + inertia * kappa, 0.0)) - half), kappa  # κ of a free joint is rounding
+    coriolis = (x[:, 1] * product(p.C, -1.0, p.links, np.ascontiguousarray(x[:, 0]))).sum(1)  # ½i x*Cx, as C is skew
+    root = np.sqrt(np.maximum(coriolis**2 + inertia * kappa, 0.0))  # κ of a free joint is rounding
+    return kappa / (root - coriolis), kappa
 
 
 @np.errstate(divide="ignore", over="ignore", invalid="ignore")  # as in ``_quotients``

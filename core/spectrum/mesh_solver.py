@@ -90,7 +90,7 @@ def solve(
     mesh: Mesh, omega: float, options: Options, start: Start | None = None, initial_shape: Shape | None = None
 ) -> Solved:
     """Solve at one speed (rad/s), from the solutions at previous speeds, or from ``initial_shape`` if there are none."""
-    begun, start = time.perf_counter(), start or Start()
+    start_time, start = time.perf_counter(), start or Start()
     gravity, effects = options.gravity, options.effects
     guess = blade_state.extrapolate(mesh, start.coordinates, omega)
     try:
@@ -122,7 +122,7 @@ def solve(
         state,
         strain,
         mesh.elements,
-        seconds=time.perf_counter() - begun,
+        seconds=time.perf_counter() - start_time,
         start=Start(previous, basis),
     )
 
@@ -173,6 +173,6 @@ def balance(mesh: Mesh, omega: float, gravity: Array, effects: Effects, guess: S
             if effects == ALL_EFFECTS
             else Steady(state.shape, pencil.linearize(mesh, state.shape, omega, gravity, effects))
         )
-    still = pencil.undeformed(mesh)
+    shape = pencil.undeformed(mesh)
     loaded = blade_state.prestress_at_rest(mesh, omega, gravity) if effects.geometric else mesh
-    return Steady(still, pencil.linearize(loaded, still, omega, gravity, effects))
+    return Steady(shape, pencil.linearize(loaded, shape, omega, gravity, effects))

@@ -105,5 +105,5 @@ def _conservative(linear: Linearization) -> bool:
     """Whether C is skew and K symmetric by nature: no dampers, and a motion that is steady."""
     mechanism = linear.tree.mechanism
     dampers = [*mechanism.coordinate_springs, *mechanism.springs, *mechanism.beams]
-    still = not linear.state.a.any() and not driven_by_loops(linear.tree, linear.state).any()
-    return still and not any(np.any(d.damping) for d in dampers)
+    at_rest = not linear.state.a.any() and not driven_by_loops(linear.tree, linear.state).any()
+    return at_rest and not any(np.any(d.damping) for d in dampers)

@@ -171,11 +171,11 @@ def _refined(at: AtSpeed, requested: float) -> Modes:
         values = factor * estimate.values
         order = np.argsort(values)
         uncertainty = (estimate.of_values + of_factor + rounded)[order]
-        now = replace(
+        current = replace(
             last, frequencies=values[order], uncertainty=uncertainty, rounding=rounded, shapes=last.shapes[order]
         )
         if best is None or uncertainty.max() < best.uncertainty.max():
-            best = now
+            best = current
         if (
             uncertainty <= requested
         ).all() or rounded.max() > 0.5 * uncertainty.max():  # accurate enough, or limited by rounding
@@ -224,14 +224,15 @@ def _coarser(at: AtSpeed, last: Modes) -> Array | None:
     """(m,) uncertainties from a half and a quarter of the elements; None if these have no steady state."""
     n, m = last.elements, len(last.frequencies)
     try:
-        coarse, half = (at.solved(Key(k)) for k in (n // 4, n // 2))
+        coarse, medium = (at.solved(Key(k)) for k in (n // 4, n // 2))
         bias = at.bias(Key(n // 4), coarse)
     except _FAILURES:
         return None
-    few, more = coarse.frequencies[:m], half.frequencies[:m]
-    if len(few) < m or len(more) < m:
+    coarse_frequencies, medium_frequencies = coarse.frequencies[:m], medium.frequencies[:m]
+    if len(coarse_frequencies) < m or len(medium_frequencies) < m:
         return None
-    return accuracy.estimate(np.array([few, more, last.frequencies]), at.meshes.order).of_finest + np.abs(bias[:m])
+    levels = np.array([coarse_frequencies, medium_frequencies, last.frequencies])
+    return accuracy.estimate(levels, at.meshes.order).of_finest + np.abs(bias[:m])
 
 
 def _from_default(at: AtSpeed, last: Modes) -> Array:

@@ -64,9 +64,11 @@ def rounding(linear: Linearization, eigenpairs: eigen.Eigen | eigen.Damped) -> A
         computed = eigenpairs.vectors[:, k] / unit
         residual = float(np.linalg.norm(y.conj().T @ (Q @ computed)) / np.linalg.norm(computed))
         powers = (abs(value) ** 2, abs(value), 1.0)
-        spread = sum(p * (4.0 * _EPS * size + change) for p, size, change in zip(powers, sizes, changes, strict=True))
-        moved = float(np.linalg.norm(np.abs(y).T @ (unit[:, None] * spread * unit) @ np.abs(x)))
-        simple = (residual + moved) / sharp if sharp > 0 else np.inf
+        entry_errors = sum(
+            p * (4.0 * _EPS * size + change) for p, size, change in zip(powers, sizes, changes, strict=True)
+        )
+        change_of_value = float(np.linalg.norm(np.abs(y).T @ (unit[:, None] * entry_errors * unit) @ np.abs(x)))
+        simple = (residual + change_of_value) / sharp if sharp > 0 else np.inf
         if simple > _TOGETHER and cluster.sum() > 1:
             simple = float(np.abs(values[cluster] - values[cluster].mean()).max()) / abs(value)
         out[k] = FLOOR + _SAFETY * simple

@@ -110,8 +110,8 @@ class Balance:
         if np.abs(gap).max(initial=0.0) > CLOSED:
             return None
         names = tuple(self.tree.coordinates[j] for j in self.part.independent)
-        moved = replace(balance_at(self.tree, q, self.dead, names), trust=self.trust)
-        return None if out_of_range(self.tree, moved.state.kinematics.poses) else moved
+        new = replace(balance_at(self.tree, q, self.dead, names), trust=self.trust)
+        return None if out_of_range(self.tree, new.state.kinematics.poses) else new
 
 
 @dataclass(frozen=True)
@@ -143,8 +143,8 @@ class Tangent:
         With ``allow_unstable``, the added stiffness has the sign of its own: the step leads towards an unstable equilibrium.
         """
         root = np.sqrt(self.scale)
-        added = np.diag(weight * self._sign(allow_unstable))
-        return -balance.part.spread(ranked(self.matrix + added).solve(balance.independent_forces / root) / root)
+        penalty = np.diag(weight * self._sign(allow_unstable))
+        return -balance.part.spread(ranked(self.matrix + penalty).solve(balance.independent_forces / root) / root)
 
     def is_attractor(self, allow_unstable: bool) -> bool:
         """Whether short steps of ``relaxation`` from all nearby points lead here: no eigenvalue of D⁻¹ K̂ has Re < 0."""
@@ -201,13 +201,13 @@ def tangent_at(tree: Tree, state: State, part: partition.Partition) -> Tangent:
         by_independent = by_independent + C @ R1 + M @ R2
     units = coordinate_units(tree, length_at(tree, k.poses))
     rounding, unit = rounding_at(tree, state, part), units[part.independent]
-    least = (replace(part, R=np.abs(R)).onto(_forces_of_unit_strain(tree, state, units)[part.free]) + rounding) / unit
+    floor = (replace(part, R=np.abs(R)).onto(_forces_of_unit_strain(tree, state, units)[part.free]) + rounding) / unit
     stiffness = part.onto(by_independent)
-    scale = np.maximum(np.abs(np.diagonal(stiffness)), STIFFNESS_ROUNDING / TOLERANCE * least)
+    scale = np.maximum(np.abs(np.diagonal(stiffness)), STIFFNESS_ROUNDING / TOLERANCE * floor)
     check_finite(scale)
     root = np.sqrt(np.where(scale > 0, scale, 1.0))
     scaled = stiffness / root[:, None] / root
-    error = np.sqrt(STIFFNESS_ROUNDING * np.maximum(least, 0.0)) / root
+    error = np.sqrt(STIFFNESS_ROUNDING * np.maximum(floor, 0.0)) / root
     return Tangent(scaled, ranked(scaled, error=error), root**2, rounding, units[part.free])
 
 

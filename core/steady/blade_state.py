@@ -199,10 +199,10 @@ def displaced(mesh: Mesh, shape: Shape, step: Array, relative: Array) -> Shape:
         step: (n, 6 or 12) twists of nodes 1 … n in their axes, and changes of β.
         relative: (dn,) the same step by the coordinates (ρ, β).
     """
-    moved = kernels.displaced(mesh.parent, np.ascontiguousarray(shape.relative), np.ascontiguousarray(step))
+    nodes = kernels.displaced(mesh.parent, np.ascontiguousarray(shape.relative), np.ascontiguousarray(step))
     rho = relative.reshape(step.shape)[:, :6]
     joints = shape.joints + np.array([joint.rate @ rho[joint.link] for joint in mesh.joints])
-    return assembled(mesh, moved, shape.beta + step[:, 6:], joints)
+    return assembled(mesh, nodes, shape.beta + step[:, 6:], joints)
 
 
 def coordinates(mesh: Mesh, shape: Shape) -> Array:
@@ -253,10 +253,10 @@ def _lengths(mesh: Mesh) -> Array:
 
 def prestress_at_rest(mesh: Mesh, omega: float, gravity: Array) -> Mesh:
     """The undeformed mesh with the internal forces of a linear static analysis: Yoo and Shin's linear theory."""
-    still = Effects(geometric=False)
-    residual = linearize(mesh, undeformed(mesh), omega, gravity, still).residual.reshape(len(mesh.nodes) - 1, -1)
+    effects = Effects(geometric=False)
+    residual = linearize(mesh, undeformed(mesh), omega, gravity, effects).residual.reshape(len(mesh.nodes) - 1, -1)
     bare = replace(mesh, lumps=np.zeros_like(mesh.lumps), beams=bm.massless(mesh.beams))
-    elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), still).factor
+    elastic = linearize(bare, undeformed(bare), 0.0, np.zeros(3), effects).factor
     rho = elimination.solution(elastic, -residual[:, :6].ravel()).reshape(-1, 6)
     loaded = replace(mesh.beams, preload=bm.linear_force(mesh.beams, rho))
     return replace(mesh, beams=replace(loaded, internal_preload=-residual[:, 6:]))

@@ -40,8 +40,8 @@ def check_constant(linear: Linearization) -> None:
     change, term = _largest_change(linear, moving)
     if change <= MAX_CHANGE:
         return
-    alone = [_largest_change(linear, moving, [m])[0] for m in moving]
-    name = moving[int(np.argmax(alone))].coordinate
+    changes = [_largest_change(linear, moving, [m])[0] for m in moving]
+    name = moving[int(np.argmax(changes))].coordinate
     cause = "gravity, which is not along its axis" if _varies_by_gravity(linear, moving) else "its motion"
     raise MechanismError(
         f"coordinate {name!r}: {term} changes by {min(100 * change, 999.0):.3g} % of its size as it moves: the equations "
@@ -100,12 +100,12 @@ def _change(linear: Linearization, forces: Array, moving: list[Motion], time: fl
         np.union1d(linear.partition.dependent, carried), [tree.coordinate(m.coordinate) for m in moving]
     )
     try:
-        later = residual_closed_by(tree, q, follow, linear.names)
-        later_linear = about(tree, later.state, p=later.part)
+        later_balance = residual_closed_by(tree, q, follow, linear.names)
+        later_linear = about(tree, later_balance.state, p=later_balance.part)
     except MechanismError:  # a loop that cannot follow, or goes through a singularity
         return np.inf, "a loop"
-    size = rounding_at(tree, later.state, later.part)
-    unbalanced = later.independent_forces - forces
+    size = rounding_at(tree, later_balance.state, later_balance.part)
+    unbalanced = later_balance.independent_forces - forces
     scale = np.abs(np.diagonal(linear.K)) + omega * np.abs(np.diagonal(linear.C)) + omega**2 * np.diagonal(linear.M)
     root = np.sqrt(np.maximum(scale, 1e-6 * size / _units(linear)[linear.partition.independent]))
     root = np.where(root > 0, root, 1.0)
@@ -121,8 +121,8 @@ def _after(tree: Tree, moving: list[Motion], time: float) -> Tree:
     """The tree with the rates that accelerating motions have after ``time`` (s)."""
     if not any(m.acceleration for m in moving):
         return tree
-    later = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}
-    motions = tuple(later.get(m.coordinate, m) for m in tree.mechanism.motions)
+    later_motions = {m.coordinate: replace(m, rate=m.rate + m.acceleration * time) for m in moving}
+    motions = tuple(later_motions.get(m.coordinate, m) for m in tree.mechanism.motions)
     return replace(tree, mechanism=replace(tree.mechanism, motions=motions))
 
 

@@ -27,12 +27,12 @@ def relaxed(tree: Tree, q: Array, allow_unstable: bool = False) -> Balance | Non
     An implicit step adds the damping divided by the time step to the stiffness. Time steps grow as unbalanced forces decrease
     (C. T. Kelley and D. E. Keyes, *SIAM J. Numer. Anal.* 35, 1998, 508–523) and shrink if a step is long or forces double.
     """
-    weight, tried, rises = 1.0, np.inf, 0
+    weight, last_weight, rises = 1.0, np.inf, 0
     current = balance_at(tree, q)
     for _ in range(_MAX_RELAXATIONS):
-        nearly = weight <= min(0.1 * tried, _NEGLIGIBLE_WEIGHT) and current.length < SMALL_CORRECTION
+        nearly = weight <= min(0.1 * last_weight, _NEGLIGIBLE_WEIGHT) and current.length < SMALL_CORRECTION
         if current.balanced or nearly:
-            tried = weight
+            last_weight = weight
             equilibrium = newton(current)
             if equilibrium and equilibrium.tangent.is_attractor(allow_unstable):
                 return equilibrium

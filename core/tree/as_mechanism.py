@@ -68,12 +68,12 @@ def single_element(beams: Beams, k: int) -> Beams:
     """The k-th element as a batch of one."""
     inside = beams.points.element == k
     p = beams.points
-    none = np.zeros(int(inside.sum()), dtype=np.intp)
+    no_indices = np.zeros(int(inside.sum()), dtype=np.intp)
     at = slice(k, k + 1)
     return Beams(
         law=part(beams.law, at),
         stiffness=beams.stiffness[at],
-        points=Points(none, p.zeta0[inside], p.shape[inside], p.bubble[inside], p.mass[inside], p.force[inside]),
+        points=Points(no_indices, p.zeta0[inside], p.shape[inside], p.bubble[inside], p.mass[inside], p.force[inside]),
         preload=beams.preload[at],
         internal_preload=beams.internal_preload[at],
     )

@@ -162,9 +162,9 @@ def _bodies(tree: Tree, k: Kinematics, out: _Sum) -> None:
 
 def _state(k: Kinematics, body: NDArray[np.intp], at: Array) -> tuple[Array, Array, Array]:
     """Poses (e, 4, 4) of frames ``at`` in bodies, and the bodies' twists and their rates (e, 6); −1 is the ground."""
-    still = np.zeros((1, 6))
+    zeros = np.zeros((1, 6))
     x = np.concatenate([k.poses, np.eye(4)[None]])[body] @ at
-    return x, np.concatenate([k.Y, still])[body], np.concatenate([k.A, still])[body]
+    return x, np.concatenate([k.Y, zeros])[body], np.concatenate([k.A, zeros])[body]
 
 
 def _between(w: Array, k: Array, c: Array) -> bm.Pencil:
@@ -215,8 +215,8 @@ def _load(tree: Tree, k: Kinematics, load: Load, out: _Sum) -> None:
     K = np.zeros((6, 6))
     K[:3, 3:] = -sp.skew(force)
     out.g[body] -= to_body[:3].T @ force
-    row, none = np.array([body]), np.zeros((1, 6, 6))
-    out.blocks.append((row, row, (none, none, (to_body.T @ K @ to_body)[None])))
+    row, zeros = np.array([body]), np.zeros((1, 6, 6))
+    out.blocks.append((row, row, (zeros, zeros, (to_body.T @ K @ to_body)[None])))
 
 
 def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
@@ -255,9 +255,9 @@ def _beams(tree: Tree, k: Kinematics, batch: Batch, out: _Sum) -> None:
 def _check_steady(tree: Tree, batch: Batch, length: float, ya: Array, yb: Array, aa: Array) -> None:
     unit = np.repeat([length, 1.0], 3)
     rate, opening, acceleration = (np.abs(y / unit).max(1) for y in (ya, yb - ya, aa))
-    bad = (opening > _STEADY * rate) | (acceleration > _STEADY * rate**2)
-    if bad.any():
-        beam = tree.mechanism.beams[batch.index[int(bad.argmax())]]
+    unsteady = (opening > _STEADY * rate) | (acceleration > _STEADY * rate**2)
+    if unsteady.any():
+        beam = tree.mechanism.beams[batch.index[int(unsteady.argmax())]]
         raise MechanismError(
             f"beam {beam.body_a!r}–{beam.body_b!r}: it has mass, but its ends do not move together steadily; lump its mass, "
             "or fix the motion between its ends"

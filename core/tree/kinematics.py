@@ -78,8 +78,8 @@ def poses(tree: Tree, q: Array) -> tuple[Array, Array]:
     """Poses (b, 4, 4) of the bodies and screws J (6, n) at coordinates q (n,)."""
     j = tree.joints
     q, screw = q[:j], tree.screw[:j]
-    whole = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # full turns, removed before the exponential's series
-    amount = np.where(screw[:, 3:].any(1), q - whole, q)
+    full_turns = 2.0 * np.pi * np.round(q / (2.0 * np.pi))  # full turns, removed before the exponential's series
+    amount = np.where(screw[:, 3:].any(1), q - full_turns, q)
     steps = tree.fixed[:j] @ sp.exp(screw * amount[:, None])
     frames = kernels.placed(tree.links.parent[:j], np.eye(4), steps)  # of the ground and of the links
     J = np.zeros((6, len(tree.coordinates)))
@@ -100,8 +100,8 @@ def kinematics(tree: Tree, q: Array, v: Array, a: Array) -> Kinematics:
 
 def _of_links(tree: Tree, relative: Array) -> Array:
     """(k, n + 1, 6) twists of the ground, which rests, and of the links, from those relative to their parents (k, n, 6)."""
-    moved = twists(tree.links, np.ascontiguousarray(relative).reshape(len(relative), -1))
-    return np.concatenate([np.zeros((len(moved), 1, 6)), moved], axis=1)
+    link_twists = twists(tree.links, np.ascontiguousarray(relative).reshape(len(relative), -1))
+    return np.concatenate([np.zeros((len(link_twists), 1, 6)), link_twists], axis=1)
 
 
 def carried(tree: Tree, wrenches: Array) -> Array:

@@ -21,8 +21,8 @@ def mode_shapes(body: Mesh, shape: Shape, twists: Array) -> NDArray[np.complex12
     """
     element = body.samples.element
     begins = np.concatenate([np.zeros((len(twists), 1, 6)), twists[..., :6]], axis=1)[:, body.parent[element]]
-    moved = np.concatenate([begins, twists[:, element]], axis=2)  # (ξ_a, ξ_b, β)
-    sampled = np.einsum("qij,mqj->mqi", sampling_matrix(body, shape)[..., : moved.shape[2]], moved)
+    motions = np.concatenate([begins, twists[:, element]], axis=2)  # (ξ_a, ξ_b, β)
+    sampled = np.einsum("qij,mqj->mqi", sampling_matrix(body, shape)[..., : motions.shape[2]], motions)
     return sampled[::2] + 1j * sampled[1::2]
 
 

@@ -103,27 +103,27 @@ def partition(tree: Tree, k: Kinematics, independent: tuple[str, ...] | None = N
     length = length_at(tree, k.poses)
     equations, units = weld_units(tree, length), coordinate_units(tree, length)[free]
     scaled = J * units / equations[:, None]
-    dependent, chosen = pivots(scaled)
+    dependent, independent_columns = pivots(scaled)
     rank = len(dependent)
     if independent is not None:
-        chosen = np.flatnonzero(np.isin(free, [tree.coordinate(name) for name in independent]))
-        dependent = np.setdiff1d(np.arange(len(free)), chosen)
+        independent_columns = np.flatnonzero(np.isin(free, [tree.coordinate(name) for name in independent]))
+        dependent = np.setdiff1d(np.arange(len(free)), independent_columns)
     pinv = ranked(J[:, dependent], equations, units[dependent])
-    if independent is not None and (len(chosen) != len(free) - rank or pinv.rank < rank):
+    if independent is not None and (len(independent_columns) != len(free) - rank or pinv.rank < rank):
         raise MechanismError(
             f"independent: {', '.join(independent)} do not determine the others: give {len(free) - rank} that are free "
             "and not tied to each other by a loop, or leave the choice to the solver"
         )
-    R = np.zeros((len(free), len(chosen)))
-    R[chosen, np.arange(len(chosen))] = 1.0
+    R = np.zeros((len(free), len(independent_columns)))
+    R[independent_columns, np.arange(len(independent_columns))] = 1.0
     R1, R2 = np.zeros_like(R), np.zeros_like(R)
     if rank:
         J1, J2 = (jacobian(tree, b)[:, free] for b in (k.B1, k.B2))
         # δΦ = Φ_qD δq_D + Φ_qI δq_I = 0 (eq. 13), so δq_D = −Φ_qD⁻¹ Φ_qI δq_I (eq. 14), and δq = R δq_I (eq. 15)
-        R[dependent] = -pinv.solve(J[:, chosen])
+        R[dependent] = -pinv.solve(J[:, independent_columns])
         R1[dependent] = -pinv.solve(J1 @ R)
         R2[dependent] = -pinv.solve(J2 @ R + 2.0 * J1 @ R1)
-    return Partition(free, free[chosen], free[dependent], R, R1, R2, _redundant(tree, scaled, rank))
+    return Partition(free, free[independent_columns], free[dependent], R, R1, R2, _redundant(tree, scaled, rank))
 
 
 def freedom(tree: Tree, k: Kinematics) -> int:

@@ -140,8 +140,8 @@ def has_free_motion(p: TreePencil) -> bool:
     ]  # no strain elsewhere
     x = x.reshape(len(x), -1)
     K = x @ product(p.K, 1.0, p.links, x).T
-    moved = np.concatenate([np.zeros((len(x), 1, 6)), twists(p.links, x)[..., :6]], axis=1)
-    begins = np.abs(moved[:, p.links.parent])
+    node_twists = np.concatenate([np.zeros((len(x), 1, 6)), twists(p.links, x)[..., :6]], axis=1)
+    begins = np.abs(node_twists[:, p.links.parent])
     cancelled = np.sqrt(np.einsum("mki,kij,mkj->m", begins, np.abs(p.K[:, :6, :6]), begins))
     unit = np.where(cancelled > 0, cancelled, 1.0)
     scaled = 0.5 * (K + K.T) / unit[:, None] / unit

@@ -24,26 +24,29 @@ def compile_tree(mechanism: Mechanism) -> Tree:
         MechanismError: names used twice or unknown, a body that no joint reaches, an impossible inertia.
     """
     check_mechanism(mechanism)
-    added = _Coordinates()
+    coordinates = _Coordinates()
     # Φ = [Φᴶ; Φᶜ; Φᴹ] = 0 (eq. 2): joints of the tree, ``cuts``, and the mechanism's motions
-    placement, cuts = _spanned(mechanism, added)
+    placement, cuts = _spanned(mechanism, coordinates)
     names = [b.name for b in mechanism.bodies]
     # each cut joint leads to a massless copy of its child, which is welded to the child
-    copies = [_hang(joint, True, placement, added) for joint in cuts]
+    copies = [_hang(joint, True, placement, coordinates) for joint in cuts]
     originals = [-1 if joint.child == GROUND else names.index(joint.child) for joint in cuts]
     bodies = (*names, *(f"{joint.child} beyond {joint.name}" for joint in cuts))
     inertia = [*(b.inertia for b in mechanism.bodies), *np.zeros((len(cuts), 6, 6))]
     links = [*(placement[name] for name in names), *copies]
-    first = [_add_internal(added, k, beam.beams.internal_count) for k, beam in enumerate(mechanism.beams)]
-    n = len(added.names)
-    parent, internal = np.array(added.parent, dtype=np.intp), np.array([j for j in first if j >= 0], dtype=np.intp)
+    first = [_add_internal(coordinates, k, beam.beams.internal_count) for k, beam in enumerate(mechanism.beams)]
+    n = len(coordinates.names)
+    parent, internal = (
+        np.array(coordinates.parent, dtype=np.intp),
+        np.array([j for j in first if j >= 0], dtype=np.intp),
+    )
     link = np.array([k for k, _ in links], dtype=np.intp)
     tree = Tree(
         mechanism=mechanism,
-        coordinates=tuple(added.names),
+        coordinates=tuple(coordinates.names),
         parent=parent,
-        fixed=np.array(added.fixed).reshape(n, 4, 4),
-        screw=np.array(added.screw).reshape(n, 6),
+        fixed=np.array(coordinates.fixed).reshape(n, 4, 4),
+        screw=np.array(coordinates.screw).reshape(n, 6),
         bodies=bodies,
         link=link,
         on_link=np.array([pose for _, pose in links]),
@@ -79,7 +82,7 @@ Placement = tuple[int, Array]
 """A link, −1 for the ground, and a pose on it."""
 
 
-def _spanned(mechanism: Mechanism, added: _Coordinates) -> tuple[dict[str, Placement], list[Joint]]:
+def _spanned(mechanism: Mechanism, coordinates: _Coordinates) -> tuple[dict[str, Placement], list[Joint]]:
     """The place of every body and the cut joints; the tree's coordinates are added."""
     placement: dict[str, Placement] = {GROUND: (-1, np.eye(4))}
     waiting = [j for j in mechanism.joints if not j.cut]
@@ -89,9 +92,9 @@ def _spanned(mechanism: Mechanism, added: _Coordinates) -> tuple[dict[str, Place
         if ready.parent in placement and ready.child in placement:
             cuts.append(ready)
         elif ready.parent in placement:
-            placement[ready.child] = _hang(ready, True, placement, added)
+            placement[ready.child] = _hang(ready, True, placement, coordinates)
         else:
-            placement[ready.parent] = _hang(ready, False, placement, added)
+            placement[ready.parent] = _hang(ready, False, placement, coordinates)
     for body in mechanism.bodies:
         if body.name not in placement:
             raise MechanismError(
@@ -100,21 +103,21 @@ def _spanned(mechanism: Mechanism, added: _Coordinates) -> tuple[dict[str, Place
     return placement, cuts
 
 
-def _hang(joint: Joint, forward: bool, placement: Mapping[str, Placement], added: _Coordinates) -> Placement:
+def _hang(joint: Joint, forward: bool, placement: Mapping[str, Placement], coordinates: _Coordinates) -> Placement:
     """Add the joint's coordinates, from the end that is already placed; return the place of the other end."""
     near_frame, far_frame = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
     link, pose = placement[joint.parent if forward else joint.child]
     pose = pose @ near_frame
     steps = list(zip(coordinate_names(joint), SCREWS[joint.kind], strict=True))
     for name, (_, screw) in steps if forward else reversed(steps):
-        link, pose = added.add(name, link, pose, screw if forward else -screw), np.eye(4)
+        link, pose = coordinates.add(name, link, pose, screw if forward else -screw), np.eye(4)
     return link, pose @ sp.inverse(far_frame)
 
 
-def _add_internal(added: _Coordinates, beam: int, count: int) -> int:
+def _add_internal(coordinates: _Coordinates, beam: int, count: int) -> int:
     """Add the internal coordinates of a beam; return the first, or −1 without any."""
     names = [f"beam {beam + 1}.{j + 1}" for j in range(count)]
-    return min((added.add(name, -1, np.eye(4), np.zeros(6)) for name in names), default=-1)
+    return min((coordinates.add(name, -1, np.eye(4), np.zeros(6)) for name in names), default=-1)
 
 
 def _check_axes(tree: Tree) -> None:

@@ -59,44 +59,44 @@ class Assembled:
     blade_links: Links
 
 
-def assemble(made: Machine, omega: float) -> Assembled:
+def assemble(machine: Machine, omega: float) -> Assembled:
     """The turbine's equations at a speed, rad/s.
 
     Raises:
         PeriodicError: they vary with the azimuth.
         SteadyStateError: the blades have no steady state.
     """
-    a, _ = _built(made, omega)
-    if made.turbine.blades < multiblade.MIN_BLADES:
+    a, _ = _built(machine, omega)
+    if machine.turbine.blades < multiblade.MIN_BLADES:
         raise PeriodicError(
-            f"blades: {made.turbine.blades}: the equations of two blades vary with the azimuth and have no constant modes; "
+            f"blades: {machine.turbine.blades}: the equations of two blades vary with the azimuth and have no constant modes; "
             "`southwell campbell` solves them by Floquet's and Hill's methods"
         )
-    first, second = (rotor(made.turbine, a.blade, omega, psi) for psi in (0.0, 0.7))
+    first, second = (rotor(machine.turbine, a.blade, omega, psi) for psi in (0.0, 0.7))
     check_constant(first, second, abs(omega) + float(a.blade.frequencies[0]))
     return a
 
 
-def periodic(made: Machine, omega: float) -> tuple[Assembled, Periodic]:
+def periodic(machine: Machine, omega: float) -> tuple[Assembled, Periodic]:
     """The turbine's equations at a speed, rad/s, at the azimuth 0 and as periodic functions of it.
 
     Raises:
         SteadyStateError: the blades have no steady state.
     """
-    a, at = _built(made, omega)
+    a, at = _built(machine, omega)
     return a, sampled(at, omega, tuple(f"x{k}" for k in range(len(a.M))))
 
 
-def _built(made: Machine, omega: float) -> tuple[Assembled, Callable[[float], Matrices]]:
+def _built(machine: Machine, omega: float) -> tuple[Assembled, Callable[[float], Matrices]]:
     """The equations at the azimuth 0, and at any."""
-    turbine = made.turbine
+    turbine = machine.turbine
     with one_thread():
-        state = balance(made.blade_mesh, omega, np.zeros(3), ALL_EFFECTS)
-        if made.blade_motions is None:
-            blade = component.reduced_component(made.blade_mesh, state, made.resolution.blade_modes)
+        state = balance(machine.blade_mesh, omega, np.zeros(3), ALL_EFFECTS)
+        if machine.blade_motions is None:
+            blade = component.reduced_component(machine.blade_mesh, state, machine.resolution.blade_modes)
         else:
-            blade = component.restricted(made.blade_mesh, state, made.blade_motions)
-    t, r, n, hinges = made.tower.size, blade.size, turbine.blades, turbine.hinge.shape[1]
+            blade = component.restricted(machine.blade_mesh, state, machine.blade_motions)
+    t, r, n, hinges = machine.tower.size, blade.size, turbine.blades, turbine.hinge.shape[1]
     drive = turbine.drivetrain
     rigid = np.isinf(drive.stiffness)
     angles = (0 if rigid else 1) + (1 if drive.free else 0)  # of the hub, and of the generator
@@ -105,7 +105,7 @@ def _built(made: Machine, omega: float) -> tuple[Assembled, Callable[[float], Ma
     size = t + angles + hinges + n * r
     # twist of the hub, without and with the shaft's angle, and rotation of the generator
     nacelle = np.zeros((6, size))
-    nacelle[:, :t] = sp.adjoint(sp.inverse(turbine.shaft)) @ made.tower.tip
+    nacelle[:, :t] = sp.adjoint(sp.inverse(turbine.shaft)) @ machine.tower.tip
     hub_twist, generator = nacelle.copy(), nacelle[5] / drive.gear_ratio
     if angles:
         hub_twist[:, t] += RZ
@@ -127,7 +127,7 @@ def _built(made: Machine, omega: float) -> tuple[Assembled, Callable[[float], Ma
 
     def at(psi: float) -> Matrices:
         M, C, K = (J.T @ part @ J for part in rotor(turbine, blade, omega, psi))
-        for total, part in zip((M, C, K), (made.tower.M, made.tower.C, made.tower.K), strict=True):
+        for total, part in zip((M, C, K), (machine.tower.M, machine.tower.C, machine.tower.K), strict=True):
             total[:t, :t] += part
         M += drive.generator * drive.gear_ratio**2 * np.outer(generator, generator)
         return 0.5 * (M + M.T), C, K + springs
@@ -138,15 +138,15 @@ def _built(made: Machine, omega: float) -> tuple[Assembled, Callable[[float], Ma
         M=M,
         C=C,
         K=K,
-        tower=made.tower,
+        tower=machine.tower,
         blade=blade,
         shaft=tuple(range(t, t + angles)),
         teeter=tuple(teeter.tolist()),
         blades=blades,
         hub=hub_twist,
-        meshes=(made.tower_mesh, made.blade_mesh),
-        shapes=(made.tower_state.shape, state.shape),
-        tower_links=made.tower_state.pencil.links,
+        meshes=(machine.tower_mesh, machine.blade_mesh),
+        shapes=(machine.tower_state.shape, state.shape),
+        tower_links=machine.tower_state.pencil.links,
         blade_links=state.pencil.links,
     )
     return assembled, at

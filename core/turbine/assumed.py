@@ -121,10 +121,10 @@ def _integrated(beam: Blade, shapes: Curvatures, at: Array) -> tuple[Array, Arra
     slope = np.concatenate([zero, np.cumsum(bending, axis=1) * step], axis=1)
     deflection = np.concatenate([zero, np.cumsum(0.5 * (slope[:, 1:] + slope[:, :-1]), axis=1) * step], axis=1)
     slope, deflection = (_at(at, s, part) for part in (slope, deflection))
-    none = np.zeros((*slope.shape[:2], 1))
+    zeros = np.zeros((*slope.shape[:2], 1))
     return (
-        np.concatenate([none, deflection], axis=-1),
-        np.concatenate([none, -slope[..., 1:], slope[..., :1]], axis=-1),
+        np.concatenate([zeros, deflection], axis=-1),
+        np.concatenate([zeros, -slope[..., 1:], slope[..., :1]], axis=-1),
     )
 
 

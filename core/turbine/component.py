@@ -59,13 +59,13 @@ def reduced_component(mesh: Mesh, state: Steady, count: int, by_tip: bool = Fals
         by_tip: whether the part is driven at its last node, instead of at node 0.
     """
     p = state.pencil
-    still = TreePencil(p.residual, p.M, np.zeros_like(p.C), p.K, p.links)
-    modes = lanczos(still, count).vectors.T
+    undamped = TreePencil(p.residual, p.M, np.zeros_like(p.C), p.K, p.links)
+    modes = lanczos(undamped, count).vectors.T
     phase = modes[np.arange(len(modes)), np.abs(modes).argmax(1)]
     lowest = np.real(modes * (np.abs(phase) / phase)[:, None])
     frame = sp.adjoint(sp.inverse(mesh.nodes[0]))  # from the carrying frame to node 0
-    moved = _carried(p, np.zeros((6, lowest.shape[1])), frame.T)
-    loads = _at_tip(p) if by_tip else np.concatenate([_loads(p.M, p, moved), _loads(p.C, p, moved)])
+    frame_motions = _carried(p, np.zeros((6, lowest.shape[1])), frame.T)
+    loads = _at_tip(p) if by_tip else np.concatenate([_loads(p.M, p, frame_motions), _loads(p.C, p, frame_motions)])
     loads = loads[np.abs(loads).max(1) > 1e-12 * np.abs(loads).max()]
     elimination.solve(p.factor, loads)
     return _restricted(mesh, state, np.concatenate([lowest, loads]))
@@ -93,9 +93,9 @@ def _restricted(mesh: Mesh, state: Steady, motions: Array) -> Component:
     """A part that moves in the given motions (k, dn) of (ρ, β) alone."""
     p = state.pencil
     frame = sp.adjoint(sp.inverse(mesh.nodes[0]))  # from the carrying frame to node 0
-    moved = _carried(p, np.zeros((6, motions.shape[1])), frame.T)
+    frame_motions = _carried(p, np.zeros((6, motions.shape[1])), frame.T)
     vectors, frequencies = _orthogonal(p, motions) if len(motions) else (motions, np.zeros(0))
-    local = np.concatenate([_carried(p, vectors, np.zeros((len(vectors), 6))), moved])
+    local = np.concatenate([_carried(p, vectors, np.zeros((len(vectors), 6))), frame_motions])
     M, C, K = (np.einsum("xni,nij,ynj->xy", local, part, local, optimize=True) for part in (p.M, p.C, p.K))
     tip = twists(p.links, vectors)[:, -1, :6].T
     return Component(M, C, K, frequencies, vectors, tip)
@@ -114,8 +114,8 @@ def _carried(p: TreePencil, x: Array, root: Array) -> Array:
 
 def _loads(matrix: Array, p: TreePencil, motions: Array) -> Array:
     """(m, dn) forces on (ρ, β) due to motions (m, n, d + 6)."""
-    none = np.zeros((len(p.links.parent) + 1, 6))
-    return np.array([gathered(p.links, f, none).ravel() for f in np.einsum("nij,mnj->mni", matrix, motions)])
+    zeros = np.zeros((len(p.links.parent) + 1, 6))
+    return np.array([gathered(p.links, f, zeros).ravel() for f in np.einsum("nij,mnj->mni", matrix, motions)])
 
 
 def _at_tip(p: TreePencil) -> Array:
@@ -135,8 +135,8 @@ def _orthogonal(p: TreePencil, x: Array) -> tuple[Array, Array]:
     K, M = (np.einsum("xni,nij,ynj->xy", local, part, local, optimize=True) for part in (p.K, p.M))
     scale = 1.0 / np.sqrt(np.diagonal(K))
     sizes, shapes = np.linalg.eigh(scale[:, None] * 0.5 * (K + K.T) * scale)
-    keep = sizes > _DEPENDENT * sizes[-1]
-    unit = scale[:, None] * shapes[:, keep] / np.sqrt(sizes[keep])
+    independent = sizes > _DEPENDENT * sizes[-1]
+    unit = scale[:, None] * shapes[:, independent] / np.sqrt(sizes[independent])
     squares, combination = np.linalg.eigh(unit.T @ (0.5 * (M + M.T)) @ unit)
     massive = squares > _DEPENDENT**2 * squares[-1]
     unit = (unit @ combination)[:, massive][:, ::-1] / np.sqrt(squares[massive][::-1])

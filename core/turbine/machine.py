@@ -103,8 +103,8 @@ def machine(turbine: Turbine, resolution: Resolution | None = None, assumed: Ass
             tower = component.restricted(mesh, state, tower_motions)
     r = tower.size
     M = tower.M[:r, :r] - tower.tip.T @ rotor @ tower.tip  # the rotor is added with its blades
-    alone = replace(tower, M=M, C=tower.C[:r, :r], K=tower.K[:r, :r])
-    return Machine(turbine, how, alone, mesh, state, blade_mesh, blade_motions)
+    without_rotor = replace(tower, M=M, C=tower.C[:r, :r], K=tower.K[:r, :r])
+    return Machine(turbine, how, without_rotor, mesh, state, blade_mesh, blade_motions)
 
 
 def rigid_rotor(turbine: Turbine, mesh: Mesh) -> Array:

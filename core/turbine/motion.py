@@ -40,8 +40,8 @@ class Motion:
 def displacements(shape: Shape, links: Links, vectors: Array) -> Array:
     """(r, n + 1, 3) displacements of the nodes of a part in motions (r, dn), in the axes of node 0's carrier."""
     own = twists(links, vectors)[..., :3]
-    moved = np.einsum("nij,rnj->rni", shape.nodes[1:, :3, :3], own)
-    return np.concatenate([np.zeros((len(vectors), 1, 3)), moved], axis=1)
+    in_frame = np.einsum("nij,rnj->rni", shape.nodes[1:, :3, :3], own)
+    return np.concatenate([np.zeros((len(vectors), 1, 3)), in_frame], axis=1)
 
 
 def flattened(motion: Motion, angles: Complex, length: float) -> Complex:

@@ -44,15 +44,15 @@ class RigidPart:
     nacelle: Array = field(default_factory=lambda: np.zeros((6, 6)))
 
 
-def lowering(made: Machine, parts: Sequence[RigidPart]) -> Array:
+def lowering(machine: Machine, parts: Sequence[RigidPart]) -> Array:
     """(p, m) fractions by which the flexibility of each part would lower the ``MODES`` lowest frequencies at rest."""
-    a = assemble(made, 0.0)
+    a = assemble(machine, 0.0)
     values, vectors = eigh(0.5 * (a.K + a.K.T), a.M)
-    turbine, t, r = made.turbine, made.tower.size, a.blade.size
+    turbine, t, r = machine.turbine, machine.tower.size, a.blade.size
     drive = turbine.drivetrain
     first = 1 if drive.free else 0  # without the rotor that turns freely
     squared, x = values[first : first + MODES], vectors[:, first : first + MODES]
-    top, hub, z = made.tower.tip @ x[:t], a.hub @ x, x[a.blades.ravel()]
+    top, hub, z = machine.tower.tip @ x[:t], a.hub @ x, x[a.blades.ravel()]
     of_rotor = rotor(turbine, a.blade, 0.0, 0.0)[0][-6:] @ np.concatenate([z, hub])
     to_shaft = sp.adjoint(sp.inverse(turbine.shaft))
     turns = to_shaft[5] @ top + (drive.gear_ratio * x[a.shaft[-1]] if drive.free else 0.0)
@@ -60,8 +60,8 @@ def lowering(made: Machine, parts: Sequence[RigidPart]) -> Array:
     T, n = multiblade.transformation(0.0, turbine.blades), turbine.blades
     of_blades = []
     for k in range(n):
-        moved = np.concatenate([np.kron(T[k], np.eye(r)) @ z, turned_axes(2.0 * np.pi * k / n)[0] @ hub])
-        of_blades.append(a.blade.M[-6:] @ moved)
+        coordinates = np.concatenate([np.kron(T[k], np.eye(r)) @ z, turned_axes(2.0 * np.pi * k / n)[0] @ hub])
+        of_blades.append(a.blade.M[-6:] @ coordinates)
     out = []
     for part in parts:
         if part.carries == "all":

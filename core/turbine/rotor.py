@@ -34,9 +34,9 @@ def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple
     T, R = multiblade.transformation(psi, n), multiblade.rate(n)
     parts = [in_ground_frame(spinning(turbine.hub, omega), omega, _hub_motion(psi, 0.0, hinge, n * r))]
     for k in range(n):
-        turned = 2.0 * np.pi * k / n
+        angle = 2.0 * np.pi * k / n
         P = []
-        for order, of_root in enumerate(_hub_motion(psi, turned, hinge, n * r)):
+        for order, of_root in enumerate(_hub_motion(psi, angle, hinge, n * r)):
             own = np.zeros((r, size))
             own[:, : n * r] = np.kron((T @ np.linalg.matrix_power(R, order))[k], np.eye(r))
             P.append(np.concatenate([own, of_root]))
@@ -45,11 +45,11 @@ def rotor(turbine: Turbine, blade: Component, omega: float, psi: float) -> tuple
     return M, C, K
 
 
-def _hub_motion(psi: float, turned: float, hinge: Array, before: int) -> list[Array]:
+def _hub_motion(psi: float, angle: float, hinge: Array, before: int) -> list[Array]:
     """(6, nr + 6 + h) twist of the hub in its axes turned by an angle from blade 0, and its derivatives with respect to ψ."""
     out = []
-    for order, rotation in enumerate(turned_axes(psi + turned)):
-        on_hinge = turned_axes(turned)[0] @ hinge if order == 0 else np.zeros_like(hinge)
+    for order, rotation in enumerate(turned_axes(psi + angle)):
+        on_hinge = turned_axes(angle)[0] @ hinge if order == 0 else np.zeros_like(hinge)
         out.append(np.concatenate([np.zeros((6, before)), rotation, on_hinge], axis=1))
     return out
 

@@ -73,8 +73,8 @@ class Support:
     @property
     def free(self) -> NDArray[np.intp]:
         """The directions in which the base moves."""
-        none = np.zeros(0, dtype=np.intp)
-        return none if self.base is None else np.flatnonzero(np.isfinite(np.diagonal(self.base)))
+        no_directions = np.zeros(0, dtype=np.intp)
+        return no_directions if self.base is None else np.flatnonzero(np.isfinite(np.diagonal(self.base)))
 
     @property
     def finite(self) -> Array:
@@ -158,10 +158,10 @@ def base_energy(support: Support, state: Steady, vectors: Array, motions: NDArra
         return np.zeros((6, motions.shape[1]))
     axes = state.shape.nodes[foot, :3, :3]
     own = twists(state.pencil.links, vectors)[:, foot - 1, :6].reshape(-1, 2, 3)
-    moved = (own @ axes.T).reshape(-1, 6).T @ motions
+    base_motions = (own @ axes.T).reshape(-1, 6).T @ motions
     K = support.finite
-    total = np.einsum("im,ij,jm->m", moved.conj(), K, moved).real
-    parts = np.diagonal(K)[:, None] * np.abs(moved) ** 2
+    total = np.einsum("im,ij,jm->m", base_motions.conj(), K, base_motions).real
+    parts = np.diagonal(K)[:, None] * np.abs(base_motions) ** 2
     return parts * (total / np.maximum(parts.sum(0), np.finfo(float).tiny))
 
 
@@ -235,8 +235,8 @@ def _held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady
         heights, weights = _gauss(_ends(beam, support, elements), support.soil)
         mesh = tower_mesh(beam, support, elements, heights)
         sampled = sampling_matrix(mesh, state.shape)[:, 1:3]
-        for link, k, moved in zip(mesh.samples.element.tolist(), weights.tolist(), sampled, strict=True):
-            J = _of_link(p, link, moved)
+        for link, k, sample in zip(mesh.samples.element.tolist(), weights.tolist(), sampled, strict=True):
+            J = _of_link(p, link, sample)
             K[link] += k * J.T @ J
     offset = 0 if support.base is None else len(support.free) or 1
     ends = _ends(beam, support, elements)
@@ -256,18 +256,18 @@ def _held(beam: Blade, support: Support, elements: int, state: Steady) -> Steady
 
 def _of_end(p: TreePencil, state: Steady, link: int) -> Array:
     """The motion (6, d) of a link's end, in the ground's axes."""
-    moved = np.zeros((6, 12))
-    moved[:3, 6:9] = moved[3:, 9:] = state.shape.nodes[link + 1, :3, :3]
-    return _of_link(p, link, moved)
+    selection = np.zeros((6, 12))
+    selection[:3, 6:9] = selection[3:, 9:] = state.shape.nodes[link + 1, :3, :3]
+    return _of_link(p, link, selection)
 
 
-def _of_link(p: TreePencil, link: int, moved: Array) -> Array:
+def _of_link(p: TreePencil, link: int, selection: Array) -> Array:
     """A motion over (ξ_a, ξ_b, β) of a link's ends, from (ξ_a, ρ, β)."""
-    at_b = moved[:, 6:12] @ p.links.to_child[link]
-    out = np.zeros((len(moved), p.K.shape[1]))
-    out[:, :6], out[:, 6:12] = moved[:, :6] + at_b, at_b
-    internal = min(moved.shape[1], out.shape[1]) - 12
-    out[:, 12 : 12 + internal] = moved[:, 12 : 12 + internal]
+    at_b = selection[:, 6:12] @ p.links.to_child[link]
+    out = np.zeros((len(selection), p.K.shape[1]))
+    out[:, :6], out[:, 6:12] = selection[:, :6] + at_b, at_b
+    internal = min(selection.shape[1], out.shape[1]) - 12
+    out[:, 12 : 12 + internal] = selection[:, 12 : 12 + internal]
     return out
 
 
@@ -285,9 +285,9 @@ def _gauss(ends: Array, soil: Array) -> tuple[Array, Array]:
     grid = np.unique(np.concatenate([ends, soil[:, 0], [low, high]]))
     grid = grid[(grid >= low) & (grid <= high)]
     x, w = np.polynomial.legendre.leggauss(POINTS)
-    half = 0.5 * np.diff(grid)[:, None]
-    heights = 0.5 * (grid[1:] + grid[:-1])[:, None] + half * x
-    return heights.ravel(), (half * w * np.interp(heights, soil[:, 0], soil[:, 1])).ravel()
+    half_length = 0.5 * np.diff(grid)[:, None]
+    heights = 0.5 * (grid[1:] + grid[:-1])[:, None] + half_length * x
+    return heights.ravel(), (half_length * w * np.interp(heights, soil[:, 0], soil[:, 1])).ravel()
 
 
 def checked(name: str, stiffness: Array, positive: bool) -> Array:
@@ -310,8 +310,8 @@ def checked(name: str, stiffness: Array, positive: bool) -> Array:
     scaled = part / np.outer(unit, unit)
     if np.abs(scaled - scaled.T).max(initial=0.0) > 1e-6:
         raise ValueError(f"{name}: not symmetric: the stiffness of springs is; mirror one triangle")
-    least = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T)).min(initial=1.0))
-    if least < -1e-9 or (positive and least < 1e-9):
+    smallest = float(np.linalg.eigvalsh(0.5 * (scaled + scaled.T)).min(initial=1.0))
+    if smallest < -1e-9 or (positive and smallest < 1e-9):
         free_motion = (
             "not positive in every direction: the tower moves freely" if positive else "negative in a direction"
         )

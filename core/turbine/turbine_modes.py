@@ -77,7 +77,7 @@ class TurbineModes:
     motions: Complex
 
 
-def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
+def turbine_modes(machine: Machine, omega: float, count: int = 12) -> TurbineModes:
     """The ``count`` lowest modes of a turbine at a speed, rad/s.
 
     Raises:
@@ -86,13 +86,13 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         SteadyStateError: the blades have no steady state.
         EigenError: the eigenvalue solver fails.
     """
-    if made.turbine.blades >= multiblade.MIN_BLADES:
-        return _constant_modes(made, omega, count)
-    a, solved = periodic_modes(made, omega, count)
-    labels, numbers = _labels(made, a)
+    if machine.turbine.blades >= multiblade.MIN_BLADES:
+        return _constant_modes(machine, omega, count)
+    a, solved = periodic_modes(machine, omega, count)
+    labels, numbers = _labels(machine, a)
     values, shapes, energies, parts = solved.values.copy(), [], [], []
     for k, harmonics in enumerate(solved.harmonics):
-        energy = _energies(made, a, harmonics.T, numbers, len(labels))
+        energy = _energies(machine, a, harmonics.T, numbers, len(labels))
         group = energy.sum(0).argmax()
         largest = int(energy[:, group].argmax())  # where the motion that names the mode moves most
         values[k] += 1j * omega * (largest - len(harmonics) // 2)
@@ -102,32 +102,32 @@ def turbine_modes(made: Machine, omega: float, count: int = 12) -> TurbineModes:
         energies.append(energy.sum(0))
         parts.append(energy[largest, group] / energy.sum())
     order = np.argsort(values.imag, kind="stable")
-    modes = _named(made, a, values[order], np.array(shapes)[order].T, np.array(energies)[order])
+    modes = _named(machine, a, values[order], np.array(shapes)[order].T, np.array(energies)[order])
     return replace(modes, confidence=np.array(parts)[order])
 
 
-def _constant_modes(made: Machine, omega: float, count: int) -> TurbineModes:
+def _constant_modes(machine: Machine, omega: float, count: int) -> TurbineModes:
     """The modes of constant equations."""
-    a = assemble(made, omega)
-    free = made.turbine.drivetrain.free
+    a = assemble(machine, omega)
+    free = machine.turbine.drivetrain.free
     rigid = np.zeros((len(a.M), 0))
     if free:  # hub and generator turn together
         rigid = np.zeros((len(a.M), 1))
         rigid[list(a.shaft)] = 1.0
     with one_thread():
         eigenpairs = eigen.damped(a.M, a.C, a.K, None, (rigid, rigid) if free else None)
-    keep = np.flatnonzero(np.abs(eigenpairs.values) > RIGID * a.blade.frequencies[0])[:count]
-    values, vectors = eigenpairs.values[keep], eigenpairs.vectors[:, keep]
-    labels, numbers = _labels(made, a)
-    modes = _named(made, a, values, vectors, _energies(made, a, vectors, numbers, len(labels)))
-    return replace(modes, motions=stations.motions(made.turbine, a, vectors))
+    elastic = np.flatnonzero(np.abs(eigenpairs.values) > RIGID * a.blade.frequencies[0])[:count]
+    values, vectors = eigenpairs.values[elastic], eigenpairs.vectors[:, elastic]
+    labels, numbers = _labels(machine, a)
+    modes = _named(machine, a, values, vectors, _energies(machine, a, vectors, numbers, len(labels)))
+    return replace(modes, motions=stations.motions(machine.turbine, a, vectors))
 
 
-def _named(made: Machine, a: Assembled, values: Complex, vectors: Complex, energies: Array) -> TurbineModes:
+def _named(machine: Machine, a: Assembled, values: Complex, vectors: Complex, energies: Array) -> TurbineModes:
     """Modes with eigenvalues (m,), shapes (n, m) and elastic energies (m, g)."""
     total = energies.sum(1, keepdims=True)
     energies = energies / np.where(total > 0, total, 1.0)
-    labels, numbers = _labels(made, a)
+    labels, numbers = _labels(machine, a)
     names, directions = [], np.zeros(len(values))
     for k, x in enumerate(vectors.T):
         group = int(energies[k].argmax())
@@ -136,7 +136,7 @@ def _named(made: Machine, a: Assembled, values: Complex, vectors: Complex, energ
         if len(motions):
             label, directions[k] = _turned(a, label, x, motions)
         names.append(label)
-    motion = _motion(made, a, vectors)
+    motion = _motion(machine, a, vectors)
     return TurbineModes(
         omega=a.omega,
         frequencies=np.abs(values),
@@ -168,13 +168,13 @@ def _turned(a: Assembled, label: str, x: Complex, motions: NDArray[np.intp]) -> 
     return f"{label} {'tilt' if parts[1] >= parts[2] else 'yaw'}", turning.direction
 
 
-def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDArray[np.intp]]]:
+def _labels(machine: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDArray[np.intp]]]:
     """Names of the groups, and the group of each elastic motion of ``tower`` and ``blade``."""
     out: list[str] = ["yaw", SHAFT, *(f"platform {name}" for name in PLATFORM), *([TEETER] if a.teeter else [])]
     numbers: dict[str, NDArray[np.intp]] = {}
     parts = (
-        ("tower", made.turbine.tower, a.tower, a.meshes[0], a.shapes[0], NAMES),
-        ("blade", made.turbine.blade, a.blade, a.meshes[1], a.shapes[1], BLADE_NAMES),
+        ("tower", machine.turbine.tower, a.tower, a.meshes[0], a.shapes[0], NAMES),
+        ("blade", machine.turbine.blade, a.blade, a.meshes[1], a.shapes[1], BLADE_NAMES),
     )
     for part, beam, component, mesh, shape, words in parts:
         p = a.tower_links if part == "tower" else a.blade_links
@@ -184,7 +184,7 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
         occurrences: dict[str, int] = {}
         group: list[int] = []
         base = (
-            made.base_energy(np.eye(component.size, dtype=complex))
+            machine.base_energy(np.eye(component.size, dtype=complex))
             if part == "tower"
             else np.zeros((6, component.size))
         )
@@ -200,22 +200,24 @@ def _labels(made: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDA
     return tuple(out), numbers
 
 
-def _energies(made: Machine, a: Assembled, vectors: Complex, numbers: dict[str, NDArray[np.intp]], count: int) -> Array:
+def _energies(
+    machine: Machine, a: Assembled, vectors: Complex, numbers: dict[str, NDArray[np.intp]], count: int
+) -> Array:
     """(m, g) elastic energy in each group; that of a teeter hinge includes its centrifugal stiffness."""
     t = a.tower.size
     out = np.zeros((vectors.shape[1], count))
     squared = np.abs(vectors) ** 2
     tower = a.tower.frequencies[:, None] ** 2 * squared[:t]
     total = tower.sum(0)
-    yawing = np.minimum(made.yaw_energy(vectors[:t]), total)
-    base = made.base_energy(vectors[:t])
+    yawing = np.minimum(machine.yaw_energy(vectors[:t]), total)
+    base = machine.base_energy(vectors[:t])
     springs = np.minimum(yawing + base.sum(0), total)
     np.add.at(out.T, numbers["tower"], tower * (1.0 - springs / np.where(total > 0, total, 1.0)))
     out[:, 0] = yawing
     out[:, 2:8] = base.T
-    if a.shaft and np.isfinite(made.turbine.drivetrain.stiffness):
+    if a.shaft and np.isfinite(machine.turbine.drivetrain.stiffness):
         shaft_twist = vectors[a.shaft[0]] - (vectors[a.shaft[1]] if len(a.shaft) > 1 else 0.0)
-        out[:, 1] = made.turbine.drivetrain.stiffness * np.abs(shaft_twist) ** 2
+        out[:, 1] = machine.turbine.drivetrain.stiffness * np.abs(shaft_twist) ** 2
     if a.teeter:
         (hinge,) = a.teeter
         out[:, 2 + len(PLATFORM)] = a.K[hinge, hinge] * squared[hinge]
@@ -230,17 +232,19 @@ def _weight(index: int, blades: int) -> float:
     return float((multiblade.transformation(0.0, blades)[:, index] ** 2).sum())
 
 
-def _motion(made: Machine, a: Assembled, vectors: Complex) -> Motion:
+def _motion(machine: Machine, a: Assembled, vectors: Complex) -> Motion:
     """The motion of tower, hub and blades in modes (n, m)."""
     tower = displacements(a.shapes[0], a.tower_links, a.tower.vectors)
     blade = displacements(a.shapes[1], a.blade_links, a.blade.vectors)
     blades = np.einsum("nrm,rqi->mnqi", vectors[a.blades], blade)
-    for angle, twist in zip(a.teeter, made.turbine.hinge.T, strict=True):
-        moved = twist[:3] + np.cross(twist[3:], a.shapes[1].nodes[:, :3, 3])  # of blade 0; blade 1 moves the other way
-        blades[:, 1] += vectors[angle][:, None, None] * moved
+    for angle, twist in zip(a.teeter, machine.turbine.hinge.T, strict=True):
+        displacement = twist[:3] + np.cross(
+            twist[3:], a.shapes[1].nodes[:, :3, 3]
+        )  # of blade 0; blade 1 moves the other way
+        blades[:, 1] += vectors[angle][:, None, None] * displacement
     return Motion(
         tower=a.shapes[0].nodes[:, :3, 3],
-        shaft=a.shapes[0].nodes[-1] @ made.turbine.shaft,
+        shaft=a.shapes[0].nodes[-1] @ machine.turbine.shaft,
         blade=a.shapes[1].nodes[:, :3, 3],
         tower_motion=np.einsum("rm,rpi->mpi", vectors[: a.tower.size], tower),
         hub=vectors.T @ a.hub.T,

@@ -56,21 +56,21 @@ class PeriodicModes:
     harmonics: tuple[Complex, ...]
 
 
-def periodic_modes(made: Machine, omega: float, count: int) -> tuple[Assembled, PeriodicModes]:
+def periodic_modes(machine: Machine, omega: float, count: int) -> tuple[Assembled, PeriodicModes]:
     """The ``count`` lowest modes at a speed other than 0, rad/s; the rotation of a free rotor is left out.
 
     Raises:
         PeriodicError: Floquet's or Hill's method does not converge, or they differ.
         SteadyStateError: the blades have no steady state.
     """
-    a, system = periodic(made, omega)
+    a, system = periodic(machine, omega)
     with one_thread():
-        held = _held(a, system) if made.turbine.drivetrain.free else system
+        fixed = _held(a, system) if machine.turbine.drivetrain.free else system
         signs = np.ones(len(a.M))
         signs[[*a.teeter, *a.blades[1]]] = -1.0
-        motions = _motions(held, signs)
-        used = count + made.resolution.periodic_motions
-        while (solved := _lowest(held, signs, motions, used, count, made.turbine.drivetrain.free)) is None:
+        motions = _motions(fixed, signs)
+        used = count + machine.resolution.periodic_motions
+        while (solved := _lowest(fixed, signs, motions, used, count, machine.turbine.drivetrain.free)) is None:
             if used >= len(signs):
                 raise PeriodicError(
                     "exponents: Newton's method on Hill's equations does not lead to as many modes; give other speeds"

@@ -110,7 +110,7 @@ def _matrices(blade: Blade, omega: float, elements: int):
         )
     ex.hold(exu, mbs, nodes[0], CLAMPED)
     mbs.Assemble()
-    M, _, K = ex.linearized(exu, mbs, still=True)
+    M, _, K = ex.linearized(exu, mbs, at_rest=True)
     M, B = sparse.csr_array(M), sparse.kron(sparse.eye_array(2 * len(nodes)), SPIN, format="csr")
     if omega:
         centrifugal = omega**2 * M @ B @ B
@@ -124,7 +124,7 @@ def _matrices(blade: Blade, omega: float, elements: int):
         )
         mbs.Assemble()
         ex.settle(exu, mbs, omega, rounding=ROUNDING * section.EA[0] * elements)
-        _, _, K = ex.linearized(exu, mbs, still=True)
+        _, _, K = ex.linearized(exu, mbs, at_rest=True)
     return M, 2 * omega * M @ B, K
 
 
@@ -132,8 +132,8 @@ def _shapes(q, length: float):
     """Shapes (m, 21, 4) from coordinates (n, m), by the elements' cubics; a cable has no rotation about its axis."""
     node = q.reshape(-1, 2, 3, q.shape[1])
     cubic = CubicHermiteSpline(np.linspace(0.0, length, len(node)), node[:, 0], node[:, 1])
-    moved = cubic(STATIONS * length)
-    return np.concatenate([moved, np.zeros_like(moved[:, :1])], axis=1).transpose(2, 0, 1)
+    displacements = cubic(STATIONS * length)
+    return np.concatenate([displacements, np.zeros_like(displacements[:, :1])], axis=1).transpose(2, 0, 1)
 
 
 CODE = ExudynAncf()

@@ -179,10 +179,10 @@ def _stiffness(blade: Blade, ends: Array, axes: Array, hinge: Index) -> Array:
     stiffness[:, strains[:, None], strains] = np.linalg.inv(compliance[:, strains[:, None], strains])
     first = np.array([k == list(hinge).index(strain) for k, strain in enumerate(hinge)])
     sign = np.where(first, 1.0, -1.0)
-    same = (hinge[:, None] == hinge) & ((hinge == hinge[:, None]).sum(1) > 1)
-    apart = sign[:, None] * sign * same
+    same_hinge = (hinge[:, None] == hinge) & ((hinge == hinge[:, None]).sum(1) > 1)
+    difference = sign[:, None] * sign * same_hinge
     out = stiffness[:, hinge[:, None], hinge]
-    return out + apart * np.diagonal(out, axis1=1, axis2=2)[:, None, :]
+    return out + difference * np.diagonal(out, axis1=1, axis2=2)[:, None, :]
 
 
 def root_segment(blade: Blade, start: float) -> tuple[Array, Array, Array]:

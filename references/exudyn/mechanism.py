@@ -46,9 +46,9 @@ class ExudynModel:
 class ExudynTangent:
     """The tree at one configuration (see ``matrices.null_space.Tangent``); matrices are computed when they are used."""
 
-    def __init__(self, made: System, q: Array) -> None:
-        self._system, self._q = made, q
-        unbalanced, self.gap, J = made.balance(q)
+    def __init__(self, equations: System, q: Array) -> None:
+        self._system, self._q = equations, q
+        unbalanced, self.gap, J = equations.balance(q)
         self.force, self.J = -unbalanced, J.T
 
     @cached_property

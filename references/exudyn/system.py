@@ -129,13 +129,13 @@ def sparse_matrix(exu: Any, matrix: Any) -> Any:
     return container
 
 
-def linearized(exu: Any, mbs: Any, still: bool = False, full: bool = False) -> tuple[Array, Array, Array]:
+def linearized(exu: Any, mbs: Any, at_rest: bool = False, full: bool = False) -> tuple[Array, Array, Array]:
     """Mass, damping and gyroscopic, and stiffness matrix (n, n) about the initial values; constraints are not applied.
 
-    ``still``: nothing moves or damps, and the second matrix, which takes half of the time, is zero. ``full``: they are full.
+    ``at_rest``: nothing moves or damps, and the second matrix, which takes half of the time, is zero. ``full``: they are full.
     """
     settings = _settings(exu, full)
-    if not still:
+    if not at_rest:
         mass, stiffness, damping = mbs.ComputeLinearizedSystem(settings)[:3]
         return np.array(mass), np.array(damping), np.array(stiffness)
     solver = exu.MainSolverStatic()  # the same steps without the derivative by velocities

@@ -74,7 +74,7 @@ class ExudynTree(BladeAdapter):
         """From Exudyn's mass matrix of a tree with a free hub; see ``interface.BladeAdapter``."""
         tree = hinge_segments(blade, elements)
         exu, _container, mbs = _system(tree, 0.0, FREE_HUB)
-        M, _, _ = ex.linearized(exu, mbs, still=True, full=True)
+        M, _, _ = ex.linearized(exu, mbs, at_rest=True, full=True)
         weighed = of_matrix(M[:6, :6], len(tree.ends) - 1 - steps(blade), tree.start)
         if not clamped(blade):
             return weighed
@@ -127,7 +127,7 @@ def linearize(tree: HingedSegments, omega: float) -> tuple[Array, Array, Array, 
     exu, _container, mbs = _system(tree, omega, ROTATING_HUB)
     if omega:
         _steady_state(exu, mbs, omega, len(tree.strain) + 1)
-    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs, still=not omega, full=True))
+    M, C, K = (matrix[1:, 1:] for matrix in ex.linearized(exu, mbs, at_rest=not omega, full=True))
     return M, C, K, np.array(mbs.systemData.GetODE2Coordinates(configuration=exu.ConfigurationType.Initial))[1:]
 
 
@@ -182,10 +182,10 @@ def jacobian(tree: HingedSegments, q: Array, point: Array) -> Array:
 
 def _shapes(blade: Blade, tree: HingedSegments, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.complex128]:
     """(m, 21, 4) at the common stations: a spline through the elements' ends, with zero transverse slope at a clamped root."""
-    moved = jacobian(tree, q, tree.reach)[:, :4] @ vectors
+    motions = jacobian(tree, q, tree.reach)[:, :4] @ vectors
     cone = rotation(1, np.array(-blade.precone))
-    moved[:, :3] = cone.T @ moved[:, :3]
-    ends = np.concatenate([np.zeros((1, *moved.shape[1:])), moved]) if clamped(blade) else moved
+    motions[:, :3] = cone.T @ motions[:, :3]
+    ends = np.concatenate([np.zeros((1, *motions.shape[1:])), motions]) if clamped(blade) else motions
     along = CubicSpline(tree.ends, ends[:, [0, 3]])(STATIONS * blade.length)
     level: Any = ((1, np.zeros_like(ends[0, 1:3])), "not-a-knot")
     across = CubicSpline(tree.ends, ends[:, 1:3], bc_type=level if clamped(blade) else "not-a-knot")(

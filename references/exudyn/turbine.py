@@ -133,7 +133,7 @@ def _linearized(tree: TurbineTree, q: Array, omega: float, psi: float) -> tuple[
     )
     ex.add_tree(exu, mbs, links, at, rates)
     mbs.Assemble()
-    M, C, K = ex.linearized(exu, mbs, still=not omega, full=True)
+    M, C, K = ex.linearized(exu, mbs, at_rest=not omega, full=True)
     return M, C, K + tree.stiffness
 
 

@@ -64,8 +64,8 @@ class Environment:
     @property
     def lacking(self) -> str:
         """Command that installs the missing libraries of the system; empty if none is missing."""
-        absent = ", ".join(f"lib{name}" for name in self.libraries if find_library(name) is None)
-        return f"apt-get install {' '.join(self.packages)} (not found: {absent})" if absent else ""
+        libraries = ", ".join(f"lib{name}" for name in self.libraries if find_library(name) is None)
+        return f"apt-get install {' '.join(self.packages)} (not found: {libraries})" if libraries else ""
 
     @property
     def hint(self) -> str:
@@ -101,8 +101,8 @@ def install(environment: Environment) -> Path:
     Raises:
         EnvironmentMissingError: the system lacks a library, or pip could not install it.
     """
-    if lacking := environment.lacking:
-        raise EnvironmentMissingError(f"{environment.name}: {lacking}")
+    if problem := environment.lacking:
+        raise EnvironmentMissingError(f"{environment.name}: {problem}")
     folder = environment.folder
     shutil.rmtree(folder, ignore_errors=True)
     venv.create(folder, with_pip=True)

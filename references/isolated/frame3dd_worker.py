@@ -42,8 +42,8 @@ def solve(request):
     rotating = force.any()
     supports, springs = zero.copy(), spring.copy()
     supports[0] = springs[0] = FIXED
-    every = slice(None) if rotating else slice(1)
-    reactions = [column[every] for column in (number, supports, supports, springs, supports, supports, supports)]
+    rows = slice(None) if rotating else slice(1)
+    reactions = [column[rows] for column in (number, supports, supports, springs, supports, supports, supports)]
     # a section of one square metre
     section = (unit, unit, unit, GJ / EA, EI_y / EA, EI_z / EA, EA, EA, np.degrees(twist), mass)
     elements = (number[:-1], number[:-1], number[1:], *section)
@@ -68,9 +68,9 @@ def modes(frame, count):
     Raises:
         RuntimeError: neither method finds all modes.
     """
-    for method, asked in (*((JACOBI, count + more) for more in range(MORE)), (STODOLA, count)):
+    for method, requested in (*((JACOBI, count + additional) for additional in range(MORE)), (STODOLA, count)):
         try:
-            modal = run(frame, asked, method)
+            modal = run(frame, requested, method)
             break
         except RuntimeError:
             if method == STODOLA:

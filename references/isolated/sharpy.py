@@ -144,12 +144,12 @@ def _shapes(s: Array, q: Array, vectors: NDArray[np.complex128]) -> NDArray[np.c
     J = 1 + (1 − cos θ)/θ² ψ× + (θ − sin θ)/θ³ ψ×ψ×, θ = |ψ| (M. Géradin and A. Cardona, *Flexible Multibody Dynamics*,
     2001, §4.12).
     """
-    psi, moved = q.reshape(-1, 6)[:, 3:], vectors.reshape(len(q) // 6, 6, -1)
+    psi, displacements = q.reshape(-1, 6)[:, 3:], vectors.reshape(len(q) // 6, 6, -1)
     angle = np.linalg.norm(psi, axis=1).clip(1e-8)[:, None, None]
     cross = skew(psi)
     J = np.eye(3) + (1 - np.cos(angle)) / angle**2 * cross + (angle - np.sin(angle)) / angle**3 * cross @ cross
     nodes = np.zeros((len(s), 4, vectors.shape[1]), complex)
-    nodes[1:, :3], nodes[1:, 3] = moved[:, :3], (J @ moved[:, 3:])[:, 0]
+    nodes[1:, :3], nodes[1:, 3] = displacements[:, :3], (J @ displacements[:, 3:])[:, 0]
     return CubicSpline(s, nodes)(STATIONS).transpose(2, 0, 1)
 
 

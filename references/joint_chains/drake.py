@@ -51,9 +51,9 @@ class DrakeChain:
         seeds[self.position, range(n)] = 1.0
         seeds[self.auto.num_positions() + self.velocity, range(n, 2 * n)] = 1.0
         self.auto.SetPositionsAndVelocities(self.auto_context, ad.InitializeAutoDiff(state, seeds).ravel())
-        still = np.array([ad.AutoDiffXd(0.0)] * self.auto.num_velocities())
-        none = _drake("multibody.tree").MultibodyForces_[ad.AutoDiffXd](self.auto)
-        force = self.auto.CalcInverseDynamics(self.auto_context, still, none)[self.velocity].reshape(-1, 1)
+        zeros = np.array([ad.AutoDiffXd(0.0)] * self.auto.num_velocities())
+        no_forces = _drake("multibody.tree").MultibodyForces_[ad.AutoDiffXd](self.auto)
+        force = self.auto.CalcInverseDynamics(self.auto_context, zeros, no_forces)[self.velocity].reshape(-1, 1)
         stiffness, gyroscopic = np.split(ad.ExtractGradient(force), 2, axis=1)
         require_symmetries(stiffness, gyroscopic, SYMMETRY_TOLERANCE, "Drake")
         return ad.ExtractValue(force).ravel(), stiffness, gyroscopic
@@ -67,20 +67,20 @@ class DrakeChain:
         """(6, 6): Drake's composite inertia of all links."""
         self.plant.SetPositionsAndVelocities(self.context, self._state(np.zeros(len(self.position)), 0.0))
         links = [body.index() for body in self.bodies]
-        whole = self.plant.CalcSpatialInertia(self.context, self.plant.world_frame(), links)
-        moments = whole.CalcRotationalInertia().CopyToFullMatrix3()
-        return about_hub(whole.get_mass(), whole.get_com(), moments)
+        total = self.plant.CalcSpatialInertia(self.context, self.plant.world_frame(), links)
+        moments = total.CalcRotationalInertia().CopyToFullMatrix3()
+        return about_hub(total.get_mass(), total.get_com(), moments)
 
     def jacobian(self, q: Array) -> Array:
         """(elements, 4, n); see ``joint_chain.ChainModel``."""
         rates = _drake("multibody.tree").JacobianWrtVariable.kV
         self.plant.SetPositionsAndVelocities(self.context, self._state(q, 0.0))
         world, origin = self.plant.world_frame(), np.zeros(3)
-        whole = [
+        jacobians = [
             self.plant.CalcJacobianSpatialVelocity(self.context, rates, body.body_frame(), origin, world, world)
             for body in self.bodies
         ]
-        return np.array(whole)[:, [3, 4, 5, 0]][:, :, self.velocity]  # Drake has rotation first
+        return np.array(jacobians)[:, [3, 4, 5, 0]][:, :, self.velocity]  # Drake has rotation first
 
     def _state(self, q: Array, omega: float) -> Array:
         state = np.zeros(self.plant.num_positions() + self.plant.num_velocities())
@@ -96,25 +96,25 @@ def _drake(module: str) -> Any:
 def build(chain: Mesh) -> DrakeChain:
     """A hub rotating about z, then six links on joints of one coordinate for every node except the clamped one."""
     tree, pose = _drake("multibody.tree"), _drake("math").RigidTransform
-    made = _drake("multibody.plant").MultibodyPlant(0.0)
-    made.mutable_gravity_field().set_gravity_vector(np.zeros(3))
-    nothing = tree.SpatialInertia.Zero()
-    link = made.AddRigidBody("hub", nothing)
-    hub = made.AddJoint(tree.RevoluteJoint("hub", made.world_frame(), link.body_frame(), [0, 0, 1]))
+    plant = _drake("multibody.plant").MultibodyPlant(0.0)
+    plant.mutable_gravity_field().set_gravity_vector(np.zeros(3))
+    no_inertia = tree.SpatialInertia.Zero()
+    link = plant.AddRigidBody("hub", no_inertia)
+    hub = plant.AddJoint(tree.RevoluteJoint("hub", plant.world_frame(), link.body_frame(), [0, 0, 1]))
     joints, links = [], []
     for k, (frame_pose, lump) in enumerate(zip(places(chain), bodies(chain), strict=True), 1):
-        frame = made.AddFrame(tree.FixedOffsetFrame(f"{k}", link.body_frame(), pose(frame_pose)))
+        frame = plant.AddFrame(tree.FixedOffsetFrame(f"{k}", link.body_frame(), pose(frame_pose)))
         for i, axis in enumerate(np.tile(np.eye(3), (2, 1))):
-            link = made.AddRigidBody(f"{k} {i}", _inertia(lump) if i == 5 else nothing)
+            link = plant.AddRigidBody(f"{k} {i}", _inertia(lump) if i == 5 else no_inertia)
             kind = tree.PrismaticJoint if i < 3 else tree.RevoluteJoint
-            joints.append(made.AddJoint(kind(f"{k} {i}", frame, link.body_frame(), axis)))
+            joints.append(plant.AddJoint(kind(f"{k} {i}", frame, link.body_frame(), axis)))
             frame = link.body_frame()
         links.append(link)
-    made.Finalize()
-    auto = made.ToAutoDiffXd()
+    plant.Finalize()
+    auto = plant.ToAutoDiffXd()
     return DrakeChain(
-        plant=made,
-        context=made.CreateDefaultContext(),
+        plant=plant,
+        context=plant.CreateDefaultContext(),
         auto=auto,
         auto_context=auto.CreateDefaultContext(),
         bodies=links,

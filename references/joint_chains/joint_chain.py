@@ -180,12 +180,12 @@ def bodies(chain: Mesh) -> Array:
 def _from_rigid(inertia: Array) -> float:
     """Deviation of inertias (k, 6, 6) from the form [[m, −m c×], [m c×, J]], relative to their largest entry."""
     linear, offset = inertia[:, :3, :3], inertia[:, :3, 3:]
-    wrong = [
+    deviations = [
         linear - inertia[:, :1, :1] * np.eye(3),
         offset + np.swapaxes(offset, 1, 2),
         inertia - np.swapaxes(inertia, 1, 2),
     ]
-    return max(float(np.abs(w).max()) for w in wrong) / max(float(np.abs(inertia).max()), np.finfo(float).tiny)
+    return max(float(np.abs(w).max()) for w in deviations) / max(float(np.abs(inertia).max()), np.finfo(float).tiny)
 
 
 def rigid(lump: Array) -> tuple[float, Array, Array]:
@@ -207,11 +207,11 @@ def require_symmetries(stiffness: Array, gyroscopic: Array, rounding: float, cod
         CodeError: a derivative does not have its symmetry.
     """
     for name, matrix, sign in (("dtau_dq", stiffness, 1), ("dtau_dv", gyroscopic, -1)):
-        wrong = np.abs(matrix - sign * matrix.T).max()
-        if not wrong <= rounding * np.abs(matrix).max():
+        deviation = np.abs(matrix - sign * matrix.T).max()
+        if not deviation <= rounding * np.abs(matrix).max():
             kind = "symmetric" if sign == 1 else "skew"
             raise CodeError(
-                f"{name}: {wrong:.1e} from {kind}: {code}'s derivatives are wrong for some joint of the chain"
+                f"{name}: {deviation:.1e} from {kind}: {code}'s derivatives are wrong for some joint of the chain"
             )
 
 

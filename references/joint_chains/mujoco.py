@@ -46,11 +46,11 @@ class MujocoChain:
         unit = np.eye(n)
         stiffness, gyroscopic = np.empty((n, n)), np.empty((n, n))
         for k, h in enumerate(self.step):
-            near, far = (
+            small_step, large_step = (
                 (self._force(q + s * h * unit[k], rates) - self._force(q - s * h * unit[k], rates)) / (2 * s * h)
                 for s in (1, 2)
             )
-            stiffness[:, k] = (4 * near - far) / 3
+            stiffness[:, k] = (4 * small_step - large_step) / 3
         self._place(q)
         rate = max(abs(omega), 1.0)
         for k in range(n):
@@ -83,8 +83,8 @@ class MujocoChain:
         self._place(q)
         mujoco = _mujoco()
         out = np.zeros((self.model.nbody - 2, 6, len(q) + 1))
-        for k, (along, about) in enumerate(zip(out[:, :3], out[:, 3:], strict=True)):
-            mujoco.mj_jacBody(self.model, self.data, along, about, k + 2)
+        for k, (translation, rotation) in enumerate(zip(out[:, :3], out[:, 3:], strict=True)):
+            mujoco.mj_jacBody(self.model, self.data, translation, rotation, k + 2)
         return out[:, :4, 1:]
 
     def _force(self, q: Array, rates: Array) -> Array:

@@ -235,10 +235,10 @@ class _Parts:
 
 def _parts(tree: TurbineTree, q: Array) -> _Parts:
     """The parts of a tree with the tower at the coordinates q (n,)."""
-    held = _on_hub(tree, q)
+    on_hub = _on_hub(tree, q)
     bare = _Links(tree, np.arange(tree.hub + 1), tree.bodies)
-    single = _Links(held, np.arange(len(held.strain)), held.bodies)
-    return _Parts(tree, bare, single, _by_tower(tree, q, len(held.strain)))
+    single = _Links(on_hub, np.arange(len(on_hub.strain)), on_hub.bodies)
+    return _Parts(tree, bare, single, _by_tower(tree, q, len(on_hub.strain)))
 
 
 def _standing(tree: TurbineTree) -> tuple[Array, Array]:
@@ -265,16 +265,18 @@ def _standing(tree: TurbineTree) -> tuple[Array, Array]:
 
 def _on_hub(tree: TurbineTree, q: Array) -> TurbineTree:
     """The tree of one blade on its hub, which moves in the ground's axes with six coordinates; its bodies are the blade's."""
-    placed = turbine_motion.placed(tree, q)
+    placement = turbine_motion.placed(tree, q)
     joints, angles = tree.blades[0], np.arange(tree.spin, tree.hub + 1)
-    still, unit = np.zeros((5, 3)), np.broadcast_to(np.eye(3), (6, 3, 3))
+    no_offset, unit = np.zeros((5, 3)), np.broadcast_to(np.eye(3), (6, 3, 3))
     count = 6 + len(angles) + len(joints)
     return replace(
         tree,
         strain=np.concatenate([np.arange(6), tree.strain[angles], tree.strain[joints]]),
         parent=np.arange(-1, count - 1),
-        offset=np.concatenate([placed.origin[tree.spin][None], still, 0.0 * tree.offset[angles], tree.offset[joints]]),
-        axes=np.concatenate([unit, placed.axes[tree.spin][None], tree.axes[angles[1:]], tree.axes[joints]]),
+        offset=np.concatenate(
+            [placement.origin[tree.spin][None], no_offset, 0.0 * tree.offset[angles], tree.offset[joints]]
+        ),
+        axes=np.concatenate([unit, placement.axes[tree.spin][None], tree.axes[angles[1:]], tree.axes[joints]]),
         bodies=(*[NOTHING] * (6 + len(angles)), *(tree.bodies[k] for k in joints)),
         spin=6,
         hub=5 + len(angles),

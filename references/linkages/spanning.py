@@ -85,8 +85,8 @@ def spanning(mechanism: Mechanism) -> Spanning:
     while len(bodies) <= len(mechanism.bodies):
         within = [j for j in waiting if (j.parent in bodies) != (j.child in bodies)]
         if not within:
-            lost = next(b.name for b in mechanism.bodies if b.name not in bodies)
-            raise ValueError(f"body {lost!r}: no joint connects it to the ground")
+            unconnected = next(b.name for b in mechanism.bodies if b.name not in bodies)
+            raise ValueError(f"body {unconnected!r}: no joint connects it to the ground")
         joint = min(within, key=lambda j: (j.name not in needed, j.cut))
         waiting.remove(joint)
         _lay(joint, links, bodies)
@@ -96,11 +96,11 @@ def spanning(mechanism: Mechanism) -> Spanning:
 def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops: tuple[Joint, ...]) -> Spanning:
     """The tree with each link followed by its subtree."""
     order: list[int] = []
-    ahead = [-1]
-    while ahead:
-        part = ahead.pop()
+    pending = [-1]
+    while pending:
+        part = pending.pop()
         order.append(part)
-        ahead += [k for k, link in reversed(list(enumerate(links))) if link.parent == part]
+        pending += [k for k, link in reversed(list(enumerate(links))) if link.parent == part]
     renumbered = {old: new for new, old in enumerate(order, -1)}
     ordered = tuple(replace(links[old], parent=renumbered[links[old].parent]) for old in order[1:])
     return Spanning(ordered, {name: (renumbered[link], pose) for name, (link, pose) in bodies.items()}, loops)
@@ -109,12 +109,12 @@ def _depth_first(links: list[Link], bodies: dict[str, tuple[int, Array]], loops:
 def _lay(joint: Joint, links: list[Link], bodies: dict[str, tuple[int, Array]]) -> None:
     """Add a joint's links from the end in the tree, and place the body at its other end."""
     forward = joint.parent in bodies
-    near, far = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
+    inboard, outboard = (joint.at_parent, joint.at_child) if forward else (joint.at_child, joint.at_parent)
     parent, pose = bodies[joint.parent if forward else joint.child]
-    frame = pose @ near
+    frame = pose @ inboard
     steps = AXES[joint.kind].split()
     for step in steps if forward else steps[::-1]:
         axis = np.eye(3)["xyz".index(step[-1])]
         links.append(Link(f"{joint.name}.{step}", parent, frame, axis if forward else -axis, step[0] == "r"))
         parent, frame = len(links) - 1, np.eye(4)
-    bodies[joint.child if forward else joint.parent] = parent, frame @ np.linalg.inv(far)
+    bodies[joint.child if forward else joint.parent] = parent, frame @ np.linalg.inv(outboard)

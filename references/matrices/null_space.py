@@ -141,8 +141,8 @@ def along(tangent: Tangent, free: Index, directions: Array) -> Matrices:
     """M, C, K (i, i) along directions (f, i) of the free coordinates; K includes the stiffness of the reactions."""
     multipliers = _least_squares(tangent.J[:, free].T, tangent.force[free])
     pick = np.ix_(free, free)
-    whole = (tangent.M, tangent.C, tangent.K + tangent.curvature(multipliers))
-    M, C, K = (directions.T @ a[pick] @ directions for a in whole)
+    matrices = (tangent.M, tangent.C, tangent.K + tangent.curvature(multipliers))
+    M, C, K = (directions.T @ a[pick] @ directions for a in matrices)
     return M, C, K
 
 
@@ -161,8 +161,8 @@ def steady_coordinates(model: Model, guess: Mapping[str, float]) -> Array:
     for m in model.mechanism.motions:
         if m.position is not None:
             q[model.names.index(m.coordinate)] = m.position
-    moved = [model.names.index(m.coordinate) for m in model.mechanism.motions]
-    free, last_change = np.setdiff1d(np.arange(len(q)), moved), np.inf
+    prescribed = [model.names.index(m.coordinate) for m in model.mechanism.motions]
+    free, last_change = np.setdiff1d(np.arange(len(q)), prescribed), np.inf
     for _ in range(STEPS):
         tangent = model.at(q)
         J, force, gap = tangent.J[:, free], tangent.force[free], tangent.gap
@@ -247,12 +247,12 @@ def _check_constant(model: Model, linear: Linearized) -> None:
     fastest = float(np.abs(model.rates).max(initial=0.0))
     if not fastest or not linear.null.shape[1]:
         return
-    later = model.at(linear.q + model.rates * (AZIMUTH / fastest))
-    apart = np.abs(later.gap).max(initial=0.0)
-    moved = np.abs(later.J[:, linear.free] @ linear.null).max(initial=0.0)
-    first, second = (linear.M, linear.C, linear.K), along(later, linear.free, linear.null)
+    later_tangent = model.at(linear.q + model.rates * (AZIMUTH / fastest))
+    gap = np.abs(later_tangent.gap).max(initial=0.0)
+    slip = np.abs(later_tangent.J[:, linear.free] @ linear.null).max(initial=0.0)
+    first, second = (linear.M, linear.C, linear.K), along(later_tangent, linear.free, linear.null)
     scale = (fastest**2, fastest, 1.0)
     size = max(float(np.abs(s * a).max()) for s, a in zip(scale, first, strict=True))
     change = max(float(np.abs(s * (a - b)).max()) for s, a, b in zip(scale, first, second, strict=True))
-    if change > model.rounding * size or max(apart, moved) > model.rounding:
+    if change > model.rounding * size or max(gap, slip) > model.rounding:
         raise CodeError("periodic: the matrices change with the azimuth; this adapter needs constant ones")

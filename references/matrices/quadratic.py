@@ -121,13 +121,13 @@ def _symmetric(name: str, matrix: Any, sign: int, size: float) -> Any:
         difference = products - sign * products.T
     else:
         difference = matrix - sign * matrix.T
-    wrong = max(difference.max(), -difference.min())
-    if not np.isfinite(wrong):
+    asymmetry = max(difference.max(), -difference.min())
+    if not np.isfinite(asymmetry):
         raise CodeError(f"{name}: not finite: the linearisation of the code is not usable")
-    if wrong > ASYMMETRY * size:
+    if asymmetry > ASYMMETRY * size:
         kind = "symmetric" if sign == 1 else "skew"
         raise CodeError(
-            f"{name}: {wrong / size:.1e} from {kind}: the system is damped, or not linearised about a steady state"
+            f"{name}: {asymmetry / size:.1e} from {kind}: the system is damped, or not linearised about a steady state"
         )
     return matrix if _acts(matrix) else matrix - difference / 2
 
@@ -201,11 +201,11 @@ def _iterated(M: Any, C: Any, K: Any, solve: Solve, count: int) -> Eigenpairs:
 
 def _ordered(inverse: Array, q: NDArray[np.complex128], count: int) -> Eigenpairs:
     """Modes from eigenvalues 1/ω: the positive ones, ascending in ω, largest entry 1."""
-    keep = np.flatnonzero(inverse > 1e-12 * inverse.max())
-    keep = keep[np.argsort(-inverse[keep])][:count]
-    q = q[:, keep]
-    largest = q[np.abs(q).argmax(axis=0), np.arange(len(keep))]
-    return 1 / inverse[keep], cast(NDArray[np.complex128], q / largest)
+    selected = np.flatnonzero(inverse > 1e-12 * inverse.max())
+    selected = selected[np.argsort(-inverse[selected])][:count]
+    q = q[:, selected]
+    largest = q[np.abs(q).argmax(axis=0), np.arange(len(selected))]
+    return 1 / inverse[selected], cast(NDArray[np.complex128], q / largest)
 
 
 def _unstable(K: Any) -> CodeError:

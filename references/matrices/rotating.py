@@ -80,18 +80,18 @@ def lowest(
         return np.concatenate([out, x + shift * out])
 
     operator = spla.LinearOperator((2 * n, 2 * n), matvec=inverse, dtype=complex)  # pyright: ignore[reportCallIssue]
-    asked = min(2 * (count + 2 + free), 2 * n - 2)
+    requested = min(2 * (count + 2 + free), 2 * n - 2)
     try:
         start = np.random.default_rng(0).standard_normal(2 * n).astype(complex)
-        solution = spla.eigs(operator, k=asked, which="LM", v0=start, ncv=min(2 * n, 3 * asked))
+        solution = spla.eigs(operator, k=requested, which="LM", v0=start, ncv=min(2 * n, 3 * requested))
     except spla.ArpackError as error:
         raise CodeError(f"eigenproblem: {error}: request fewer modes") from error
     inverses, vectors = (np.asarray(a, np.complex128) for a in solution)
     values = shift + 1.0 / inverses
-    keep = np.flatnonzero((values.imag > 0) & (np.abs(values) > (RIGID * scale if free else 0.0)))
-    keep = keep[np.argsort(np.abs(values[keep]), kind="stable")][:count]
+    selected = np.flatnonzero((values.imag > 0) & (np.abs(values) > (RIGID * scale if free else 0.0)))
+    selected = selected[np.argsort(np.abs(values[selected]), kind="stable")][:count]
     T, _ = _fourier(n, groups, 0.0)
-    return values[keep], T @ vectors[:n, keep]
+    return values[selected], T @ vectors[:n, selected]
 
 
 def _constant(at: Callable[[float], Matrices], omega: float, groups: Sequence[Sequence[int]]) -> tuple[Complex, ...]:
@@ -100,9 +100,9 @@ def _constant(at: Callable[[float], Matrices], omega: float, groups: Sequence[Se
     Raises:
         CodeError: they change with the azimuth.
     """
-    first, *others = [_transformed(at(psi), omega, groups, psi) for psi in AZIMUTHS]
-    for other in others:
-        for power, (a, b) in zip((2, 1, 0), zip(first, other, strict=True), strict=True):
+    first, *rest = [_transformed(at(psi), omega, groups, psi) for psi in AZIMUTHS]
+    for matrices in rest:
+        for power, (a, b) in zip((2, 1, 0), zip(first, matrices, strict=True), strict=True):
             size = max(float(np.abs(part).max()) * abs(omega) ** p for p, part in zip((2, 1, 0), first, strict=True))
             if float(np.abs(a - b).max()) * abs(omega) ** power > CHANGE * size:
                 raise CodeError(

@@ -193,8 +193,8 @@ def convert(data: Any, kind: type[T]) -> T:
         return msgspec.convert(data, kind)
     except (msgspec.ValidationError, RecursionError, OverflowError) as error:
         field = re.search(r"\$\.(\w+)", str(error))
-        about = f"{field[1]}: {_quoted(data.get(field[1]))}: " if field and isinstance(data, dict) else ""
-        raise NonsenseError(f"{about}{one_line(error)}") from None
+        location = f"{field[1]}: {_quoted(data.get(field[1]))}: " if field and isinstance(data, dict) else ""
+        raise NonsenseError(f"{location}{one_line(error)}") from None
 
 
 def _array(name: str, encoded: _Complex, dimensions: int) -> NDArray[np.complex128]:
@@ -208,8 +208,8 @@ def _array(name: str, encoded: _Complex, dimensions: int) -> NDArray[np.complex1
 
 def _finite(name: str, values: Any) -> None:
     flat = np.array(values, dtype=float).ravel()
-    bad = flat[~(np.abs(flat) <= LARGEST)]
-    _keep(not bad.size, f"{name}: {bad[:1].tolist()}: not finite, or above {LARGEST:g}")
+    invalid = flat[~(np.abs(flat) <= LARGEST)]
+    _keep(not invalid.size, f"{name}: {invalid[:1].tolist()}: not finite, or above {LARGEST:g}")
 
 
 def _ascending(name: str, values: Any) -> None:

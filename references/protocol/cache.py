@@ -37,7 +37,9 @@ def trusted(folder: Path) -> bool:
     if os.name == "nt":  # folders of the user's profile; modes and owners have no meaning there
         return True
     status, parent = folder.lstat(), folder.parent.stat()
-    others = stat.S_IWGRP | stat.S_IWOTH
-    private = stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid() and not status.st_mode & others
-    safe = parent.st_uid in (os.geteuid(), 0) and (not parent.st_mode & others or bool(parent.st_mode & stat.S_ISVTX))
+    by_others = stat.S_IWGRP | stat.S_IWOTH
+    private = stat.S_ISDIR(status.st_mode) and status.st_uid == os.geteuid() and not status.st_mode & by_others
+    safe = parent.st_uid in (os.geteuid(), 0) and (
+        not parent.st_mode & by_others or bool(parent.st_mode & stat.S_ISVTX)
+    )
     return private and safe

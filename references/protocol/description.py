@@ -112,8 +112,8 @@ def describe(
     descriptions = {description.asked: description for description in _asked(bundled, encoded, limits)}
     unanswered = [name for name in where if name not in descriptions or descriptions[name].failure]
     with ThreadPoolExecutor(PROCESSES) as threads:
-        alone = threads.map(lambda name: _asked({name: where[name]}, encoded, limits)[0], unanswered)
-        descriptions |= zip(unanswered, alone, strict=True)
+        descriptions_alone = threads.map(lambda name: _asked({name: where[name]}, encoded, limits)[0], unanswered)
+        descriptions |= zip(unanswered, descriptions_alone, strict=True)
     for description in descriptions.values():
         mistyped = ":" in description.asked
         if description.failure and description.failure.kind == "unknown" and mistyped:
@@ -126,15 +126,15 @@ def _asked(where: Mapping[str, registry.Address], blades: Sequence[Any], limits:
     if not where:
         return []
     names, request = list(where), {"codes": list(where.values()), "blades": blades}
-    lines, ended = converse(__name__, json.dumps(request).encode(), len(names), limits)
+    lines, failure = converse(__name__, json.dumps(request).encode(), len(names), limits)
     out = []
     for number, (name, line) in enumerate(zip(names, lines, strict=False)):
         try:
             out.append(_described(name, boundary.reply(line, number), len(blades)))
         except NonsenseError as error:
-            ended = Failure("nonsense", str(error))
+            failure = Failure("nonsense", str(error))
             break
-    return out + [_failed(name, ended) for name in names[len(out) :]]
+    return out + [_failed(name, failure) for name in names[len(out) :]]
 
 
 def _failed(asked: str, failure: Failure, name: Any = None) -> Description:

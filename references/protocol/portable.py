@@ -118,7 +118,7 @@ def spawned(
     time_limit: Callable[[int], float],
     stop_reason: Callable[[int], str],
     longest_line: int,
-    kept: int,
+    error_bytes: int,
     poll_interval: float,
 ) -> Output:
     """Start a process that calls ``main()`` of a module, send it a request, and read its lines.
@@ -130,7 +130,7 @@ def spawned(
         time_limit: number of lines so far → seconds until the next one.
         stop_reason: process ID → why it must be stopped; called every ``poll_interval`` seconds.
         longest_line: largest size of a line, bytes.
-        kept: number of last bytes of standard error that are returned.
+        error_bytes: number of last bytes of standard error that are returned.
         poll_interval: time between two calls of ``stop_reason``, s.
     """
     one_thread = dict.fromkeys(("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"), "1")
@@ -148,7 +148,7 @@ def spawned(
     errors = bytearray()
     readers = [
         Thread(target=_lines, args=(child.stdout, queue, longest_line), daemon=True),
-        Thread(target=_last, args=(child.stderr, errors, kept), daemon=True),
+        Thread(target=_last, args=(child.stderr, errors, error_bytes), daemon=True),
     ]
     lines: list[bytes] = []
     stopped = ""
@@ -199,8 +199,8 @@ def _lines(stream: IO[bytes], queue: "SimpleQueue[bytes]", longest: int) -> None
     queue.put(b"")
 
 
-def _last(stream: IO[bytes], into: bytearray, kept: int) -> None:
+def _last(stream: IO[bytes], into: bytearray, count: int) -> None:
     with suppress(OSError, ValueError), stream:
         while received := stream.read1(65_536):  # pyright: ignore[reportAttributeAccessIssue]
             into += received
-            del into[:-kept]
+            del into[:-count]

@@ -100,7 +100,7 @@ def _spawned(module: str, request: bytes, expected: int, limits: Limits) -> tupl
         time_limit=lambda lines: limits.seconds if lines else START,
         stop_reason=lambda pid: _too_large(portable.resident([pid, *portable.descendants(pid)]), limits),
         longest_line=LONGEST_LINE,
-        kept=STDERR_BYTES,
+        error_bytes=STDERR_BYTES,
         poll_interval=POLL_INTERVAL,
     )
     if not output.stopped:
@@ -131,7 +131,7 @@ def _listen(
         ready.register(errors, selectors.EVENT_READ)
         ready.register(stdin, selectors.EVENT_WRITE)
         while len(lines) <= expected:
-            now, ended = time.monotonic(), child.poll() is not None
+            now, has_ended = time.monotonic(), child.poll() is not None
             if now >= next_check:
                 next_check = now + POLL_INTERVAL
                 if why := _too_large(_resident(child.pid), limits):
@@ -139,8 +139,8 @@ def _listen(
             if now >= deadline:
                 within = limits.seconds if lines else START
                 return lines[1:], Failure("timed out", f"no answer within {within:g} s"), stderr
-            events = ready.select(0.0 if ended else min(POLL_INTERVAL, deadline - now))
-            if ended and not any(key.fileobj is not stdin for key, _ in events):
+            events = ready.select(0.0 if has_ended else min(POLL_INTERVAL, deadline - now))
+            if has_ended and not any(key.fileobj is not stdin for key, _ in events):
                 break  # nothing is left in its pipes
             for key, _ in events:
                 if key.fileobj is stdin:
@@ -157,8 +157,8 @@ def _listen(
                 elif key.fileobj is errors:
                     stderr = (stderr + received)[-STDERR_BYTES:]
                 else:
-                    *whole, last = received.split(b"\n")
-                    for part in whole:
+                    *complete, last = received.split(b"\n")
+                    for part in complete:
                         lines.append(bytes(line) + part)
                         line.clear()
                         deadline = time.monotonic() + limits.seconds

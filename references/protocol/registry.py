@@ -86,8 +86,8 @@ def locate(name: str) -> str:
     codes = registered()
     if name in codes:
         return codes[name]
-    near = get_close_matches(name, codes, 1)
-    advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(codes)}"
+    matches = get_close_matches(name, codes, 1)
+    advice = f"did you mean {matches[0]}?" if matches else f"give one of {', '.join(codes)}"
     raise UnknownCodeError(f"code: {name!r} is not known: {advice}")
 
 

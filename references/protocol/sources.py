@@ -63,8 +63,8 @@ def adapter(code: str) -> str:
     return _digest(folder, folder.glob("*.py")) if spec.origin else ""
 
 
-def _digest(root: Path, files: Iterable[Path], about: str = "") -> str:
-    made = sha256(about.encode())
+def _digest(root: Path, files: Iterable[Path], prefix: str = "") -> str:
+    checksum = sha256(prefix.encode())
     for path in sorted(files):
-        made.update(path.relative_to(root).as_posix().encode() + b"\0" + sha256(path.read_bytes()).digest())
-    return made.hexdigest()
+        checksum.update(path.relative_to(root).as_posix().encode() + b"\0" + sha256(path.read_bytes()).digest())
+    return checksum.hexdigest()

@@ -210,7 +210,7 @@ def array(label: str, question: tuple[object, ...], make: Callable[[], NDArray[n
     name = key(label, question)
     with suppress(KeyError, ValueError):
         return np.array(json.loads(store.get(name)[0]))
-    made = make()
+    value = make()
     with suppress(OSError):
-        store.put(name, label, json.dumps(made.tolist()).encode())
-    return made
+        store.put(name, label, json.dumps(value.tolist()).encode())
+    return value

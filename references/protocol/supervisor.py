@@ -62,7 +62,7 @@ def supervise(module: str, space: int, reads: int, writes: int, errors: int, sta
     os.write(status, b"%d\n" % os.getpid())
     _limit("RLIMIT_CORE", 0)  # no core file after a crash
     _prctl(SET_CHILD_SUBREAPER, 1)
-    ended, bell = os.pipe()
+    end_pipe, bell = os.pipe()
     os.set_blocking(bell, False)
     signal.signal(signal.SIGCHLD, lambda *_: None)
     signal.set_wakeup_fd(bell, warn_on_full_buffer=False)
@@ -70,10 +70,10 @@ def supervise(module: str, space: int, reads: int, writes: int, errors: int, sta
     if not child:
         signal.set_wakeup_fd(-1)
         signal.signal(signal.SIGCHLD, signal.SIG_DFL)
-        for own in (ended, bell, status):
+        for own in (end_pipe, bell, status):
             os.close(own)
         _work(module, space)
-    code = _wait(child, ended)
+    code = _wait(child, end_pipe)
     _sweep(child)
     with suppress(BrokenPipeError):  # nobody is left to read it
         os.write(status, b"%d\n" % os.waitstatus_to_exitcode(code))
@@ -88,15 +88,15 @@ def _work(module: str, space: int) -> None:
     os._exit(0)
 
 
-def _wait(child: int, ended: int) -> int:
+def _wait(child: int, end_pipe: int) -> int:
     """The child's wait status, after it has ended, or was killed because standard input closed."""
     poll = select.poll()
-    poll.register(ended, select.POLLIN)
+    poll.register(end_pipe, select.POLLIN)
     poll.register(0, 0)  # hang-up only: the child reads the data
     while True:
         for number, _ in poll.poll():
-            if number == ended:
-                os.read(ended, 4096)
+            if number == end_pipe:
+                os.read(end_pipe, 4096)
             else:
                 poll.unregister(0)
                 _kill(child)

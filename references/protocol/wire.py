@@ -113,9 +113,9 @@ def answers_pipe() -> TextIO:
     pipe = os.fdopen(portable.duplicate(1), "w", encoding="utf-8")
     portable.end_with_input()
     os.dup2(2, 1)
-    nothing = os.open(os.devnull, os.O_RDONLY)
-    os.dup2(nothing, 0)
-    os.close(nothing)
+    null_device = os.open(os.devnull, os.O_RDONLY)
+    os.dup2(null_device, 0)
+    os.close(null_device)
     return pipe
 
 

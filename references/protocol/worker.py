@@ -92,8 +92,8 @@ def fingerprints(
 
     Other arguments and exceptions as for ``answers``.
     """
-    given = {"blade": encode(subject)} if isinstance(subject, Blade) else {"turbine": encode_turbine(subject)}
-    fixed = {**registry.address(name), **given}
+    encoded = {"blade": encode(subject)} if isinstance(subject, Blade) else {"turbine": encode_turbine(subject)}
+    fixed = {**registry.address(name), **encoded}
     return _exchange(
         fixed,
         "fingerprints",
@@ -142,12 +142,12 @@ def _exchange(
     key: str,
     questions: Sequence[Any],
     limits: Limits,
-    made: Callable[[int, Any], T],
+    validate: Callable[[int, Any], T],
     code: str,
     version: str,
     field: str = "modes",
 ) -> list[T | Failure]:
-    """The answers to questions, each validated by ``made(number, data)``, or failures in their place.
+    """The answers to questions, each validated by ``validate(number, data)``, or failures in their place.
 
     Answers that are in the user's store are taken from it; the process of the code is asked for the others. Answers of codes
     that are not part of this package or of unknown version are not stored, as no digest covers them; nor are failures.
@@ -157,7 +157,7 @@ def _exchange(
         key: of the questions in a request.
         questions: plain data.
         limits: for each of them.
-        made: validates an answer.
+        validate: validates an answer.
         code: name or import path of the code.
         version: its version; empty if unknown.
         field: key of the answer in a reply.
@@ -166,59 +166,59 @@ def _exchange(
     def request(numbers: Sequence[int]) -> bytes:
         return json.dumps({**fixed, key: [questions[k] for k in numbers]}).encode()
 
-    kept = store.opened() if limits.reuse and version and sources.bundled(code) else None
-    keys = [store.key(request([k]), code, version) for k in range(len(questions))] if kept else []
+    user_store = store.opened() if limits.reuse and version and sources.bundled(code) else None
+    keys = [store.key(request([k]), code, version) for k in range(len(questions))] if user_store else []
     out: dict[int, T | Failure] = {}
     for k, digest in enumerate(keys):
-        if kept and (answer := _stored(kept, digest, made, k, field)):
+        if user_store and (answer := _stored(user_store, digest, validate, k, field)):
             out[k] = answer
-    asked = [k for k in range(len(questions)) if k not in out]
-    lines, ended = converse(__name__, request(asked), len(asked), limits) if asked else ([], NOTHING)
-    for number, (k, line) in enumerate(zip(asked, lines, strict=False)):
+    missing = [k for k in range(len(questions)) if k not in out]
+    lines, failure = converse(__name__, request(missing), len(missing), limits) if missing else ([], NOTHING)
+    for number, (k, line) in enumerate(zip(missing, lines, strict=False)):
         try:
             data = boundary.reply(line, number)
         except NonsenseError as error:
-            ended = Failure("nonsense", str(error))
+            failure = Failure("nonsense", str(error))
             break
-        out[k] = answer = boundary.failure(data) or _validated(made, k, data.get(field))
-        if kept and not isinstance(answer, Failure):
+        out[k] = answer = boundary.failure(data) or _validated(validate, k, data.get(field))
+        if user_store and not isinstance(answer, Failure):
             with suppress(OSError):  # a full disk, or a damaged file
-                kept.put(keys[k], f"{code}, answers", line)
-    return [out.get(k, ended) for k in range(len(questions))]
+                user_store.put(keys[k], f"{code}, answers", line)
+    return [out.get(k, failure) for k in range(len(questions))]
 
 
 NOTHING = Failure("internal", "no question was asked")
 
 
-def _stored(kept: store.Store, key: str, made: Callable[[int, Any], T], number: int, field: str) -> T | None:
+def _stored(user_store: store.Store, key: str, validate: Callable[[int, Any], T], number: int, field: str) -> T | None:
     """The answer in the store, without the time that it took; None if there is none."""
     with suppress(KeyError, ValueError, TypeError, AttributeError):
-        answer = made(number, json.loads(kept.get(key)[0]).get(field))
+        answer = validate(number, json.loads(user_store.get(key)[0]).get(field))
         return replace(answer, seconds=nan) if hasattr(answer, "seconds") else answer  # type: ignore[type-var]
     return None
 
 
-def _validated(made: Callable[[int, Any], T], number: int, data: Any) -> T | Failure:
+def _validated(validate: Callable[[int, Any], T], number: int, data: Any) -> T | Failure:
     try:
-        return made(number, data)
+        return validate(number, data)
     except (ValueError, TypeError) as error:  # from the schema, or from the class it creates
         return Failure("nonsense", one_line(error))
 
 
-def _declined(code: Any, asked: str, question: object) -> Reply | None:
+def _declined(code: Any, method: str, question: object) -> Reply | None:
     """A reply if the code is not installed, declines the problem, or raises an exception; None otherwise.
 
     Args:
         code: any code.
-        asked: name of its method that returns the reason for declining, e.g. ``unsupported``.
+        method: name of the method that returns the reason for declining, e.g. ``unsupported``.
         question: a blade, a turbine or a mechanism.
     """
     try:
-        why = getattr(code, asked)(question)
+        why = getattr(code, method)(question)
     except BaseException as error:  # an exit, too
-        return foreign_exception(error, f"{asked}()")
+        return foreign_exception(error, f"{method}()")
     if not (why is None or isinstance(why, str)):
-        return failed("nonsense", f"{asked}(): {one_line(repr(why))}: neither a reason nor None")
+        return failed("nonsense", f"{method}(): {one_line(repr(why))}: neither a reason nor None")
     if why:
         return failed("unsupported", one_line(why))
     try:
@@ -253,7 +253,7 @@ METHODS: dict[type, str] = {
 
 
 def _answer(request: Any) -> Iterator[Reply]:
-    asked = request.get("runs") or request.get("fingerprints") or request["mechanisms"]
+    requests = request.get("runs") or request.get("fingerprints") or request["mechanisms"]
     code = registry.loaded(request)
     if not isinstance(code, Failure) and request.get("deck"):
         try:
@@ -261,15 +261,15 @@ def _answer(request: Any) -> Iterator[Reply]:
         except BaseException as error:
             code = Failure("nonsense", foreign_exception(error, "with_deck()")["reason"])
     if isinstance(code, Failure):
-        yield from [failed(code.kind, code.reason)] * len(asked)
+        yield from [failed(code.kind, code.reason)] * len(requests)
     elif "mechanisms" in request:
-        for mechanism in map(decode_mechanism, asked):
+        for mechanism in map(decode_mechanism, requests):
             refusal = _declined(code, "unsupported_mechanism", mechanism)
             yield refusal or _solved(MechanismModes, code.solve_mechanism, mechanism, request["guess"])
     elif "turbine" in request:
         turbine = decode_turbine(request["turbine"])
         refusal = _declined(code, "unsupported_turbine", turbine)
-        for question in asked:
+        for question in requests:
             if "fingerprints" in request:
                 yield refusal or _solved(Fingerprint, code.turbine_fingerprint, turbine, question)
             else:
@@ -277,7 +277,7 @@ def _answer(request: Any) -> Iterator[Reply]:
     else:
         blade = decode_blade(request["blade"])
         refusal = _declined(code, "unsupported", blade)
-        for question in asked:
+        for question in requests:
             if "fingerprints" in request:
                 yield refusal or _solved(Fingerprint, code.fingerprint, blade, question)
             else:

@@ -139,8 +139,8 @@ def load(name: str) -> Table:
         except (OSError, UnicodeDecodeError) as error:
             raise TableError(f"{name}: {error}: give the path of a table, relative to the case file") from error
     if name not in names():
-        near = get_close_matches(name, names(), 1)
-        advice = f"did you mean {near[0]}?" if near else f"give one of {', '.join(names())}"
+        matches = get_close_matches(name, names(), 1)
+        advice = f"did you mean {matches[0]}?" if matches else f"give one of {', '.join(names())}"
         raise TableError(f"table: {name!r} is not known: {advice}")
     return parse((files(__name__) / f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml")
 

@@ -168,8 +168,8 @@ def _element_masses(path: Path) -> Fingerprint:
     mass = properties[5] * length
     position = np.zeros((len(mass), 3))
     position[:, 0] = start + length / 2
-    whole = of_points(mass, position, len(mass))
-    return replace(whole, rotor_inertia=whole.rotor_inertia + float(mass @ length**2) / 12)
+    masses = of_points(mass, position, len(mass))
+    return replace(masses, rotor_inertia=masses.rotor_inertia + float(mass @ length**2) / 12)
 
 
 def _doubled(blade: Blade, omega: float, count: int) -> bool:
@@ -192,7 +192,7 @@ def _most(blade: Blade, elements: int) -> int:
 
 
 def moving(
-    rotor: Any, size: tuple[float, float], count: int, doubted: bool, most: int
+    rotor: Any, size: tuple[float, float], count: int, doubted: bool, limit: int
 ) -> tuple[Array, NDArray[np.complex128]]:
     """Frequencies (m,), rad/s, and shapes (m, 21, 4) of the lowest modes with lateral motion or twist.
 
@@ -201,7 +201,7 @@ def moving(
         size: radius of the tip and length of the blade, m.
         count: number of modes.
         doubted: whether two modes may have nearly the same frequency.
-        most: the largest number of modes that pyBModes can compute.
+        limit: the largest number of modes that pyBModes can compute.
 
     With more than ``ITERATED`` freedoms, pyBModes iterates from one vector, and at times misses one of two modes with
     the same frequency. Where there may be such modes (``doubted``), more modes are requested until two answers agree.
@@ -209,10 +209,10 @@ def moving(
     Raises:
         CodeError: if an eigenvalue is not positive (pyBModes then reports a zero frequency).
     """
-    asked = min(count + SPARE, most)
+    requested = min(count + SPARE, limit)
     last_frequencies = np.zeros(0)
     while True:
-        spectrum = rotor.run(asked, check_model=False)
+        spectrum = rotor.run(requested, check_model=False)
         if not (spectrum.frequencies > 0).all():
             raise CodeError("stiffness: not positive definite: no stable steady state at this rotor speed; lower it")
         pairs = zip(spectrum.frequencies, spectrum.shapes, strict=True)
@@ -222,9 +222,9 @@ def moving(
             len(last_frequencies) == len(frequencies)
             and np.allclose(last_frequencies, frequencies, rtol=AGREEMENT, atol=0.0)
         )
-        if (len(lateral) == count and confirmed) or asked == most:
+        if (len(lateral) == count and confirmed) or requested == limit:
             break
-        last_frequencies, asked = frequencies, min(2 * asked, most)
+        last_frequencies, requested = frequencies, min(2 * requested, limit)
     return frequencies, _at_stations([shape for _, shape in lateral], *size)
 
 
@@ -237,10 +237,10 @@ def _at_stations(shapes: Sequence[Any], radius: float, length: float) -> NDArray
     s, at = shapes[0].span_loc * length, STATIONS * length
     out = np.zeros((len(shapes), len(at), 4), complex)
     for axis, name in ((1, "lag"), (2, "flap")):
-        moved, slope = (
+        displacement, slope = (
             np.array([getattr(shape, f"{name}_{motion}") for shape in shapes]) for motion in ("disp", "slope")
         )
-        out[:, :, axis] = CubicHermiteSpline(s, moved * radius, slope, axis=1)(at)
+        out[:, :, axis] = CubicHermiteSpline(s, displacement * radius, slope, axis=1)(at)
     out[:, :, 3] = CubicSpline(s, np.array([shape.twist for shape in shapes]), axis=1)(at)
     return out
 

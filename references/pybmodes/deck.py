@@ -78,7 +78,7 @@ class PyBModesDeck(BladeAdapter):
         bending = np.array([table.flp_stff, table.edge_stff], float)
         pieces = -(-elements // min(len(ends) - 1, beam.SECTIONS))
         model._bmi.rot_rpm = omega * 30.0 / np.pi
-        most = beam.FREEDOMS * pieces * (len(ends) - 1) // 2
+        limit = beam.FREEDOMS * pieces * (len(ends) - 1) // 2
         doubted = False
         with beam.reproducible():
             if beam.FREEDOMS * pieces * (len(ends) - 1) > beam.ITERATED:
@@ -86,7 +86,7 @@ class PyBModesDeck(BladeAdapter):
             _divide(model, graded(ends, bending, pieces))
             radius = float(model._bmi.radius)
             size = (radius, radius - float(model._bmi.hub_rad))
-            frequencies, shapes = beam.moving(model, size, count, doubted, most)
+            frequencies, shapes = beam.moving(model, size, count, doubted, limit)
         if self.deck.format == "ElastoDyn":
             shapes[:, :, 3] = 0.0  # torsion is nearly rigid: only rounding
         return Modes(omega, frequencies, shapes, pieces * (len(ends) - 1))

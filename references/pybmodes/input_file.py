@@ -60,12 +60,12 @@ def write(folder: Path, blade: Blade, omega: float, s: Array, count: int) -> Pat
     """
     at = sample(blade, blade.stations)
     difference = at.I_z - at.I_y
-    none = np.zeros(len(blade.stations))
+    zeros = np.zeros(len(blade.stations))
     angle = -np.degrees(at.twist + blade.pitch)
     flap, edge = (at.I_x - difference) / 2, (at.I_x + difference) / 2
     columns = (
         *(blade.stations / blade.length, angle, angle, at.mass, flap, edge),
-        *(at.EI_y, at.EI_z, at.GJ, at.EA, none, none, none),
+        *(at.EI_y, at.EI_z, at.GJ, at.EA, zeros, zeros, zeros),
     )
     rows = "\n".join(" ".join(f"{v:.17g}" for v in row) for row in zip(*columns, strict=True))
     table = TABLE.format(name=blade.name, count=len(blade.stations), rows=rows)

@@ -20,9 +20,9 @@ not read the files of OpenFAST 5. wetb alone requires sixty packages, among them
 from importlib import import_module
 from pathlib import Path
 
-from .stations import HINT, Asked, NotInstalledError, NotReadError, Stations
+from .stations import HINT, NotInstalledError, NotReadError, ReadingOptions, Stations
 
-__all__ = ["FORMATS", "HINT", "Asked", "NotInstalledError", "NotReadError", "Stations", "read"]
+__all__ = ["FORMATS", "HINT", "NotInstalledError", "NotReadError", "ReadingOptions", "Stations", "read"]
 
 FORMATS = {
     "ElastoDyn": "openfast",
@@ -36,13 +36,13 @@ FORMATS = {
 """Format → module of its second reader."""
 
 
-def read(format: str, path: Path, asked: Asked) -> Stations:
+def read(format: str, path: Path, options: ReadingOptions) -> Stations:
     """The stations of the blade in a file, by the second reader of its format.
 
     Args:
         format: a name in ``FORMATS``.
         path: the file that a user names.
-        asked: what a user states besides it.
+        options: what a user states besides it.
 
     Raises:
         NotReadError: in one line, if no second reader reads it.
@@ -50,7 +50,7 @@ def read(format: str, path: Path, asked: Asked) -> Stations:
     if format not in FORMATS:
         raise NotReadError(f"no second reader of {format}")
     try:
-        return import_module(f".{FORMATS[format]}", __package__).read(path, asked)
+        return import_module(f".{FORMATS[format]}", __package__).read(path, options)
     except NotReadError:
         raise
     except Exception as error:  # of a foreign parser, whatever it raises

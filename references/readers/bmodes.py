@@ -12,10 +12,10 @@ from typing import Any
 import numpy as np
 
 from . import sections
-from .stations import Asked, Stations, parser, straight
+from .stations import ReadingOptions, Stations, parser, straight
 
 
-def read(path: Path, asked: Asked) -> Stations:
+def read(path: Path, options: ReadingOptions) -> Stations:
     """The stations of a main file and its section table.
 
     Raises:
@@ -31,7 +31,7 @@ def read(path: Path, asked: Asked) -> Stations:
     main = bmi.read_bmi(path)
     table = sec_props.read_sec_props(main.resolve_sec_props_path())
     by = main.scaling
-    s = table.span_loc / table.span_loc[-1] * (asked.length or main.radius - main.hub_rad)
+    s = table.span_loc / table.span_loc[-1] * (options.length or main.radius - main.hub_rad)
     # towards the leading edge: minus BModes' y
     ahead_mass, ahead_tension = (
         by.sc_offst * table.sc_offst - scale * values

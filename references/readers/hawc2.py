@@ -15,10 +15,10 @@ from scipy.interpolate import Akima1DInterpolator
 
 from . import sections
 from .axis import Curve
-from .stations import Array, Asked, NotReadError, Stations, parser, straight
+from .stations import Array, NotReadError, ReadingOptions, Stations, parser, straight
 
 
-def read(path: Path, asked: Asked) -> Stations:
+def read(path: Path, options: ReadingOptions) -> Stations:
     """The stations of a structural file, or of the blade of an htc.
 
     Raises:
@@ -32,14 +32,14 @@ def read(path: Path, asked: Asked) -> Stations:
         return HTCFile, StFile
 
     (HTCFile, StFile), reader = parser("weio", imported)
-    files = (path, *asked.beside)
+    files = (path, *options.siblings)
     htc = next((file for file in files if "new_htc_structure" in file.read_text("latin-1").lower()), None)
     body = _blade(HTCFile(str(htc), modelpath=str(htc.parent))) if htc else None
-    subset = asked.subset
+    subset = options.subset
     if body is not None:
         table_input = body.timoschenko_input
         subset = subset or (tuple(int(v) for v in table_input.set[:2]) if "set" in table_input.keys() else None)  # noqa: SIM118
-        path = beside(htc, str(table_input.filename[0])) if htc is not None and path == htc else path
+        path = sibling_file(htc, str(table_input.filename[0])) if htc is not None and path == htc else path
     file = StFile(str(path))
     subset = subset or next((a, b) for a, data in file.main_data_sets.items() for b in data)
     rows = file.main_data_sets[subset[0]][subset[1]]
@@ -60,7 +60,7 @@ def _blade(htc: Any) -> Any:
     raise NotReadError("wetb finds no main_body whose name begins with blade")
 
 
-def beside(htc: Path, name: str) -> Path:
+def sibling_file(htc: Path, name: str) -> Path:
     """The file that an htc names, relative to its folder or the one above.
 
     Raises:
@@ -85,7 +85,7 @@ def _half_chord(body: Any, r: Array) -> tuple[Array, Array, Array]:
 
 
 def _stiffness(p: dict[str, Array]) -> Array:
-    angle, none = np.radians(p["pitch"]), np.zeros(len(p["r"]))
+    angle, zeros = np.radians(p["pitch"]), np.zeros(len(p["r"]))
     elastic = sections.strains(p["x_e"], p["y_e"], angle)
     if "K_11" in p:
         full = np.zeros((len(angle), 6, 6))
@@ -94,8 +94,8 @@ def _stiffness(p: dict[str, Array]) -> Array:
                 full[:, i, j] = full[:, j, i] = p[f"K_{i + 1}{j + 1}"]
         return sections.energy(elastic, sections.permuted(full, *sections.HAWC2))
     ga = p["G"] * p["A"]
-    bending = sections.diagonal(p["E"] * p["A"], none, none, none, p["E"] * p["I_x"], p["E"] * p["I_y"])
-    shearing = sections.diagonal(none, p["k_x"] * ga, p["k_y"] * ga, p["G"] * p["I_p"], none, none)
+    bending = sections.diagonal(p["E"] * p["A"], zeros, zeros, zeros, p["E"] * p["I_x"], p["E"] * p["I_y"])
+    shearing = sections.diagonal(zeros, p["k_x"] * ga, p["k_y"] * ga, p["G"] * p["I_p"], zeros, zeros)
     at_shear_centre = sections.strains(p["x_sh"], p["y_sh"], angle)
     return sections.energy(elastic, bending) + sections.energy(at_shear_centre, shearing)
 

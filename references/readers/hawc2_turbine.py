@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.spatial.transform import Rotation
 
-from .hawc2 import beside
+from .hawc2 import sibling_file
 from .openfast_turbine import Quantities
 from .quadrature import Mounted, moments
 from .stations import NotReadError, parser
@@ -53,8 +53,8 @@ class Part:
     def points(self) -> tuple[Array, Array]:
         """Gauss points and weights between stations and nodes."""
         grid = np.union1d(self.r, np.abs(self.z))
-        half = 0.5 * np.diff(grid)[:, None]
-        return (0.5 * (grid[1:] + grid[:-1])[:, None] + half * POINTS).ravel(), (half * WEIGHTS).ravel()
+        half_length = 0.5 * np.diff(grid)[:, None]
+        return (0.5 * (grid[1:] + grid[:-1])[:, None] + half_length * POINTS).ravel(), (half_length * WEIGHTS).ravel()
 
     def twisted(self, at: Array) -> Array:
         """Twist at distances ``at`` (k,) from the first node under a unit moment, rad/(N m)."""
@@ -115,8 +115,8 @@ class Machine:
         shaft, blade = self.rotor[0], self.blades[0]
         root, along = self.places[blade] - self.places[shaft], self.axes[blade][:, 2]
         slope = float(along @ self.axis)
-        away = float(np.linalg.norm(root - (root @ self.axis) * self.axis))
-        radius = away / np.sqrt(1.0 - slope**2)
+        distance = float(np.linalg.norm(root - (root @ self.axis) * self.axis))
+        radius = distance / np.sqrt(1.0 - slope**2)
         return (
             self.places[shaft] + (root @ self.axis - radius * slope) * self.axis,
             float(radius),
@@ -178,20 +178,20 @@ def weigh(path: Path, blade: Mounted, tip: Array) -> Weighed:
     level = np.cross(axis, [0.0, 1.0, 0.0])
     axes = np.column_stack([-level / np.linalg.norm(level), np.zeros(3), axis])
     axes[:, 1] = np.cross(axes[:, 2], axes[:, 0])
-    one = Moments(*moments(blade, tip))
+    blade_moments = Moments(*moments(blade, tip))
     blades = NOTHING
     for k in range(count):
-        turn = Rotation.from_euler("z", 2.0 * np.pi * k / count).as_matrix()
-        blades += one.moved(turn, np.zeros(3))
+        rotation = Rotation.from_euler("z", 2.0 * np.pi * k / count).as_matrix()
+        blades += blade_moments.moved(rotation, np.zeros(3))
     hub = sum((machine.moments(name) for name in machine.rotor), NOTHING).moved(UP, np.zeros(3))
-    place = UP @ centre
+    hub_centre = UP @ centre
     turning = Moments(0.0, np.zeros(3), -0.5 * machine.generator * (np.eye(3) - 2.0 * np.outer(axis, axis)))
-    rotor = hub.moved(np.eye(3), -place) + turning + blades.moved(axes, np.zeros(3))
+    rotor = hub.moved(np.eye(3), -hub_centre) + turning + blades.moved(axes, np.zeros(3))
     polar = float(np.trace(rotor.second) - axis @ rotor.second @ axis)
-    still = sum((machine.moments(name) for name in (machine.tower, *machine.nacelle)), NOTHING)
+    standing = sum((machine.moments(name) for name in (machine.tower, *machine.nacelle)), NOTHING)
     base = UP @ machine.places[machine.tower]
-    whole = (still.moved(UP, np.zeros(3)) + rotor.moved(np.eye(3), place)).moved(np.eye(3), -base)
-    return Weighed(whole, polar, float(abs(machine.parts[machine.tower].z[-1])))
+    total = (standing.moved(UP, np.zeros(3)) + rotor.moved(np.eye(3), hub_centre)).moved(np.eye(3), -base)
+    return Weighed(total, polar, float(abs(machine.parts[machine.tower].z[-1])))
 
 
 def _machine(path: Path) -> tuple[Machine, str]:
@@ -221,9 +221,9 @@ def _assembled(path: Path, structure: Any, StFile: Any) -> Machine:
     axis_of: dict[str, Array] = {}
     for block in _sections(structure.orientation, "relative"):
         commands = [(_plain(key), line.values) for key, line in block.contents.items()]
-        named = {key: values for key, values in commands if key in ("body1", "body2")}
-        child = str(named["body2"][0]).lower()
-        parents[child] = str(named["body1"][0]).lower(), str(named["body1"][1]).lower() == "last"
+        body_values = {key: values for key, values in commands if key in ("body1", "body2")}
+        child = str(body_values["body2"][0]).lower()
+        parents[child] = str(body_values["body1"][0]).lower(), str(body_values["body1"][1]).lower() == "last"
         turns[child] = _rotation(commands, "body2_")
         for key, values in commands:
             if key == "body2_ini_rotvec_d1":
@@ -237,9 +237,9 @@ def _assembled(path: Path, structure: Any, StFile: Any) -> Machine:
         while chain[-1] != tower:
             chain.append(parents[chain[-1]][0])
         below[blade] = chain[::-1]
-    others = [name for name in parents if not any(name in chain for chain in below.values())]
-    if others:
-        raise NotReadError(f"{others[0]} carries no blade: bodies beside the others are not weighed a second time")
+    unattached = [name for name in parents if not any(name in chain for chain in below.values())]
+    if unattached:
+        raise NotReadError(f"{unattached[0]} carries no blade: bodies beside the others are not weighed a second time")
     shaft = next((name for name in below[blades[0]] if name in axis_of), None)
     if shaft is None:
         raise NotReadError("no ini_rotvec_d1: the rotor's axis is not read a second time")
@@ -283,9 +283,9 @@ def _rotation(commands: list[tuple[str, Any]], prefix: str) -> Array:
 
 def _part(path: Path, name: str, body: Any, StFile: Any) -> Part:
     table = body.timoschenko_input
-    file = StFile(str(beside(path, str(table.filename[0]))))
-    chosen = tuple(int(v) for v in table.set[:2]) if "set" in table.contents else (1, 1)
-    rows = file.main_data_sets[chosen[0]][chosen[1]]
+    file = StFile(str(sibling_file(path, str(table.filename[0]))))
+    subset = tuple(int(v) for v in table.set[:2]) if "set" in table.contents else (1, 1)
+    rows = file.main_data_sets[subset[0]][subset[1]]
     p = dict(zip(file.cols, rows.T, strict=False))
     points = np.array([line.values[1:5] for line in _sections(body.c2_def, "sec")], float)
     if "E" not in p or points[:, [0, 1, 3]].any() or any(p[c].any() for c in ("x_cg", "y_cg", "x_e", "y_e", "pitch")):
@@ -304,8 +304,10 @@ def _part(path: Path, name: str, body: Any, StFile: Any) -> Part:
     lumped = []
     for line in _sections(body, "concentrated_mass"):
         node, *values = (float(v) for v in line.values[:8])
-        own = np.array(values[4:7])
+        about_centre = np.array(values[4:7])
         centre = np.array([0.0, 0.0, z[round(node) - 1]]) + values[:3]
-        lump = Moments(values[3], np.zeros(3), np.diag(0.5 * own.sum() - own)).moved(np.eye(3), centre)
+        lump = Moments(values[3], np.zeros(3), np.diag(0.5 * about_centre.sum() - about_centre)).moved(
+            np.eye(3), centre
+        )
         lumped.append((round(node) - 1, lump))
     return Part(p["r"] * scale, columns, z, tuple(lumped))

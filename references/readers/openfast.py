@@ -16,7 +16,7 @@ from scipy.interpolate import make_interp_spline
 
 from . import sections
 from .axis import Curve, beamdyn_roll, tangents
-from .stations import Array, Asked, NotReadError, Stations, parser
+from .stations import Array, NotReadError, ReadingOptions, Stations, parser
 
 PLANES = ("EdgEAOf", "FlpEAOf", "EdgcgOf", "FlpcgOf", "PreswpRef", "PrecrvRef")
 """FAST 7's offsets: of the elastic axis and the mass centre from the reference axis, and of that from the pitch axis."""
@@ -61,32 +61,32 @@ def has(file: Any, label: str) -> bool:
     return label in file.keys()  # noqa: SIM118
 
 
-def read(path: Path, asked: Asked) -> Stations:
+def read(path: Path, options: ReadingOptions) -> Stations:
     """The stations of the first blade that a file of OpenFAST describes.
 
     Raises:
         NotReadError: if weio does not find it.
     """
     file, reader = parsed(path)
-    beside = [parsed(other)[0] for other in asked.beside if other != path]
-    hub = next((other for other in beside if has(other, "TipRad")), None)
+    siblings = [parsed(sibling)[0] for sibling in options.siblings if sibling != path]
+    hub = next((sibling for sibling in siblings if has(sibling, "TipRad")), None)
     if has(file, "EDFile"):
         main = path.parent / text_of(file, "EDFile")
         if not has(file, "CompElast") or int(file["CompElast"]) == 1:
-            return read(main, replace(asked, beside=()))
+            return read(main, replace(options, siblings=()))
         blade = path.parent / text_of(file, "BDBldFile(1)", "BDBldFile1", "BDBldFile")
-        return read(blade, replace(asked, beside=(main,)))
+        return read(blade, replace(options, siblings=(main,)))
     if has(file, "TipRad"):
         blade, _ = parsed(path.parent / text_of(file, "BldFile(1)", "BldFile1", "BldFile"))
-        return _elastodyn(blade, file, reader, asked)
+        return _elastodyn(blade, file, reader, options)
     if has(file, "BldProp"):
-        return _elastodyn(file, hub, reader, asked)
+        return _elastodyn(file, hub, reader, options)
     if has(file, "MemberGeom"):
         table, _ = parsed(path.parent / text_of(file, "BldFile"))
-        return _beamdyn(table, file, hub, reader, asked)
+        return _beamdyn(table, file, hub, reader, options)
     if has(file, "BeamProperties"):
-        main = next((other for other in beside if has(other, "MemberGeom")), None)
-        return _beamdyn(file, main, hub, reader, asked)
+        main = next((sibling for sibling in siblings if has(sibling, "MemberGeom")), None)
+        return _beamdyn(file, main, hub, reader, options)
     raise NotReadError("weio finds no blade in it")
 
 
@@ -101,28 +101,28 @@ def mounting(hub: Any) -> dict[str, float]:
     }
 
 
-def length_of(hub: Any, asked: Asked) -> float:
+def length_of(hub: Any, options: ReadingOptions) -> float:
     """The blade's length: as asked, or from hub to tip.
 
     Raises:
         NotReadError: if neither is known.
     """
-    if asked.length:
-        return asked.length
+    if options.length:
+        return options.length
     if hub is None:
         raise NotReadError("no length: its stations are fractions of it")
     return float(first_of(hub, "TipRad") - first_of(hub, "HubRad"))
 
 
-def _elastodyn(file: Any, hub: Any, reader: str, asked: Asked) -> Stations:
-    length = length_of(hub, asked)
+def _elastodyn(file: Any, hub: Any, reader: str, options: ReadingOptions) -> Stations:
+    length = length_of(hub, options)
     names = next(entry["tabColumnNames"] for entry in file.data if entry["label"] == "BldProp")
     table = {name.lower(): values for name, values in zip(names, np.array(file["BldProp"], float).T, strict=True)}
-    none = np.zeros(len(table["blfract"]))
-    by = asked.multipliers or tuple(float(file[name]) for name in ("AdjBlMs", "AdjFlSt", "AdjEdSt"))
+    zeros = np.zeros(len(table["blfract"]))
+    by = options.multipliers or tuple(float(file[name]) for name in ("AdjBlMs", "AdjFlSt", "AdjEdSt"))
     twist = -np.radians(table["strctwst"])
     edge_axis, flap_axis, edge_mass, flap_mass, sweep, bend = (
-        table.get(name.lower(), none) if asked.offsets else none for name in PLANES
+        table.get(name.lower(), zeros) if options.offsets else zeros for name in PLANES
     )
     z = table["blfract"] / table["blfract"][-1] * length
     # n1 = x_b cos(StrcTwst) − y_b sin, n2 = x_b sin + y_b cos: from the reference axis to the elastic axis
@@ -131,7 +131,7 @@ def _elastodyn(file: Any, hub: Any, reader: str, asked: Asked) -> Stations:
     trailing = sweep - flap_axis * s + edge_axis * c
     ahead, up = edge_axis - edge_mass, flap_mass - flap_axis  # of the mass centre, from the elastic axis
     mass = by[0] * table["bmassden"]
-    yy, zz = (table.get(name, none) for name in ("edginer", "flpiner"))
+    yy, zz = (table.get(name, zeros) for name in ("edginer", "flpiner"))
     rigid = np.full(len(z), np.inf)
     stiffness = np.zeros((len(z), 6, 6))
     stiffness[:, range(6), range(6)] = sections.diagonal(
@@ -151,11 +151,11 @@ def _spline(z: Array, points: Array) -> Curve:
     return Curve(lambda at, n=0: spline(at, nu=n), z)
 
 
-def _beamdyn(table: Any, main: Any, hub: Any, reader: str, asked: Asked) -> Stations:
+def _beamdyn(table: Any, main: Any, hub: Any, reader: str, options: ReadingOptions) -> Stations:
     if main is not None:
         key = np.array(first_of(main, "MemberGeom"), float)
     else:
-        key = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, length_of(hub, asked), 0.0]])
+        key = np.array([[0.0, 0.0, 0.0, 0.0], [0.0, 0.0, length_of(hub, options), 0.0]])
     at = key[:, 2]
     curve = _spline(at, np.stack([at, -key[:, 1], key[:, 0]], axis=1))
     twist = _spline(at, key[:, 3:])

@@ -72,10 +72,10 @@ def bend(blade: Mounted) -> Array:
     soft = np.flatnonzero(np.isfinite(np.diagonal(stiffness, axis1=1, axis2=2)).all(axis=0))
     compliance = np.linalg.inv(linear(blade.stations.s, stiffness[:, soft[:, None], soft], s))
     arm = position[-1] - position[:-1]
-    here = np.zeros((6, len(s), 2, 3))
-    for load, (force, moment) in zip(here, np.eye(6).reshape(6, 2, 3), strict=True):
+    unit_loads = np.zeros((6, len(s), 2, 3))
+    for load, (force, moment) in zip(unit_loads, np.eye(6).reshape(6, 2, 3), strict=True):
         load[:, 0], load[:, 1] = force, moment + np.cross(arm, force)
-    loads = np.einsum("nji,lnkj->lnki", axes[:-1], here).reshape(6, len(s), 6)[:, :, soft]
+    loads = np.einsum("nji,lnkj->lnki", axes[:-1], unit_loads).reshape(6, len(s), 6)[:, :, soft]
     return np.einsum("n,lni,nij,mnj->lm", weight, loads, compliance, loads, optimize=True)
 
 
@@ -83,8 +83,8 @@ def _points(stations: Array, start: float) -> tuple[Array, Array]:
     """Arc lengths and weights, m, from ``start`` to the tip."""
     cuts = np.unique(np.append(stations[stations > start], start))
     x, w = POINTS
-    half = 0.5 * np.diff(cuts)[:, None]
-    return (cuts[:-1, None] + half * (1 + x)).ravel(), (half * w).ravel()
+    half_length = 0.5 * np.diff(cuts)[:, None]
+    return (cuts[:-1, None] + half_length * (1 + x)).ravel(), (half_length * w).ravel()
 
 
 def linear(stations: Array, values: Array, s: Array) -> Array:

@@ -24,18 +24,18 @@ class NotInstalledError(NotReadError):
 
 
 @dataclass(frozen=True)
-class Asked:
+class ReadingOptions:
     """What a user states besides the file, and the files that belong to it.
 
     Attributes:
-        beside: files that belong to it: ElastoDyn's or BeamDyn's main file of a blade file, the htc of a structural file.
+        siblings: files that belong to it: ElastoDyn's or BeamDyn's main file of a blade file, the htc of a structural file.
         length: from root to tip, m; needed by formats that contain only fractions of it.
         subset: set and subset of a HAWC2 structural file.
         multipliers: of mass, flapwise and edgewise stiffness: of a CSV, or of an ElastoDyn table in place of the file's.
         offsets: whether the offset columns of a CSV or of a FAST 7 table are used.
     """
 
-    beside: tuple[Path, ...] = ()
+    siblings: tuple[Path, ...] = ()
     length: float | None = None
     subset: tuple[int, int] | None = None
     multipliers: tuple[float, float, float] | None = None

@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 
 from . import sections
-from .stations import Asked, NotReadError, Stations, parser, straight
+from .stations import NotReadError, ReadingOptions, Stations, parser, straight
 
 
-def read(path: Path, asked: Asked) -> Stations:
-    """The stations of a CSV; ``asked.length`` is the blade's.
+def read(path: Path, options: ReadingOptions) -> Stations:
+    """The stations of a CSV; ``options.length`` is the blade's.
 
     Raises:
         NotReadError: without a length.
@@ -26,14 +26,14 @@ def read(path: Path, asked: Asked) -> Stations:
         return pandas
 
     pandas, reader = parser("pandas", imported)
-    if asked.length is None:
+    if options.length is None:
         raise NotReadError("no length: its stations are fractions of it")
     table = pandas.read_csv(path, comment="#", skipinitialspace=True)
     columns = {name.split(" ")[0]: table[name].to_numpy(float) for name in table.columns}
     n = len(table)
-    none, rigid = np.zeros(n), np.full(n, np.inf)
-    s = columns["fraction"] * asked.length
-    by_mass, by_flap, by_edge = asked.multipliers or (1.0, 1.0, 1.0)
+    zeros, rigid = np.zeros(n), np.full(n, np.inf)
+    s = columns["fraction"] * options.length
+    by_mass, by_flap, by_edge = options.multipliers or (1.0, 1.0, 1.0)
     stiffness = np.zeros((n, 6, 6))
     values = (
         columns.get("EA", rigid),
@@ -44,7 +44,7 @@ def read(path: Path, asked: Asked) -> Stations:
         by_edge * columns["EI_edge"],
     )
     stiffness[:, range(6), range(6)] = sections.diagonal(*values)
-    m, about_y, about_z = (by_mass * columns.get(name, none) for name in ("mass", "I_flap", "I_edge"))
-    ahead = columns.get("cg_edge", none) * asked.offsets
+    m, about_y, about_z = (by_mass * columns.get(name, zeros) for name in ("mass", "I_flap", "I_edge"))
+    ahead = columns.get("cg_edge", zeros) * options.offsets
     mass = sections.mass(m, ahead, 0.0, about_z + m * ahead**2, about_y)
     return Stations(reader, s, stiffness, mass, np.radians(columns["twist"]), straight(s))

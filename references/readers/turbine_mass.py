@@ -27,12 +27,12 @@ class Moments:
     first: Array
     second: Array
 
-    def moved(self, axes: Array, place: Array) -> "Moments":
-        """The moments in other axes, in which the body has its axes ``axes`` (3, 3) and its origin at ``place`` (3,)."""
+    def moved(self, axes: Array, origin: Array) -> "Moments":
+        """The moments in other axes, in which the body has its axes ``axes`` (3, 3) and its origin at ``origin`` (3,)."""
         first = axes @ self.first
-        cross = np.outer(place, first)
-        second = axes @ self.second @ axes.T + cross + cross.T + self.mass * np.outer(place, place)
-        return Moments(self.mass, first + self.mass * place, second)
+        cross = np.outer(origin, first)
+        second = axes @ self.second @ axes.T + cross + cross.T + self.mass * np.outer(origin, origin)
+        return Moments(self.mass, first + self.mass * origin, second)
 
     def __add__(self, other: "Moments") -> "Moments":
         """The moments of two bodies together, given in the same axes."""
@@ -87,8 +87,8 @@ def weigh(path: Path, blade: Mounted, tip: Array) -> Weighed:
     rotor = _rotor(masses["HubMass"], masses["HubCM"], masses["HubIner"])
     of_blade = Moments(*moments(blade, tip))
     for k in range(count):
-        turn = 2.0 * pi * k / count
-        axes = np.array([[cos(turn), -sin(turn), 0.0], [sin(turn), cos(turn), 0.0], [0.0, 0.0, 1.0]])
+        angle = 2.0 * pi * k / count
+        axes = np.array([[cos(angle), -sin(angle), 0.0], [sin(angle), cos(angle), 0.0], [0.0, 0.0, 1.0]])
         rotor += of_blade.moved(axes, np.zeros(3))
     up = np.array([at[-1], 0.0, 0.0])
     axis = np.array([sin(tilt), 0.0, cos(tilt)])
@@ -97,13 +97,13 @@ def weigh(path: Path, blade: Mounted, tip: Array) -> Weighed:
     centre = np.array([z, -y, x])
     own = masses["NacYIner"] - masses["NacMass"] * float(centre[1:] @ centre[1:])
     about_yaw = Moments(masses["NacMass"], np.zeros(3), 0.5 * own * np.diag([-1.0, 1.0, 1.0]))
-    whole = (
+    total = (
         _tower(at, density)
         + Moments(masses["YawBrMass"], np.zeros(3), np.zeros((3, 3))).moved(np.eye(3), up)
         + about_yaw.moved(np.eye(3), up + centre)
         + rotor.moved(axes, apex)
     )
-    return Weighed(whole, float(rotor.inertia[2]), float(at[-1]))
+    return Weighed(total, float(rotor.inertia[2]), float(at[-1]))
 
 
 def _rotor(mass: float, centre: float, about_shaft: float) -> Moments:

@@ -14,7 +14,7 @@ from scipy.interpolate import PchipInterpolator, make_interp_spline
 
 from . import sections
 from .axis import Curve, beamdyn_roll, tangents
-from .stations import Array, Asked, NotReadError, Stations, parser
+from .stations import Array, NotReadError, ReadingOptions, Stations, parser
 from .windio_schema import violations
 
 PLAUSIBLE = 1.0
@@ -24,7 +24,7 @@ SAME = 1e-9
 """Grid points closer than this fraction of the length are one."""
 
 
-def read(path: Path, asked: Asked) -> Stations:
+def read(path: Path, options: ReadingOptions) -> Stations:
     """The stations of a turbine's blade.
 
     Raises:
@@ -57,14 +57,14 @@ def read(path: Path, asked: Asked) -> Stations:
         sections.permuted(make_interp_spline(grid, values, k=1)(eta), *sections.OPENFAST)
         for grid, values in zip(grids, (stiffness, mass), strict=True)
     ]
-    absent = [i for i in (0, 1, 2, 3) if not matrices[0][:, i, i].any()]
+    rigid_strains = [i for i in (0, 1, 2, 3) if not matrices[0][:, i, i].any()]
     curve, angle = _axis(axis, twist, to_radians)
     arc = eta * curve.lengths()[-1]
     at = curve.parameter(arc)
     twist_angle = beamdyn_roll(tangents(curve, at)) - angle(at)
     mount = {**_hub(turbine), "tip_mass": _tip(elastic)}
     return Stations(
-        *(reader, arc, sections.rigid(matrices[0], *absent), matrices[1], twist_angle, curve.values(at), mount),
+        *(reader, arc, sections.rigid(matrices[0], *rigid_strains), matrices[1], twist_angle, curve.values(at), mount),
         violations=violations(turbine) if "structure" in blade else (),
     )
 
@@ -77,9 +77,9 @@ def _entries(elastic: Mapping[str, Any]) -> tuple[list[Array], Array, Array]:
     for i in range(6):
         for j in range(i, 6):
             stiffness[:, i, j] = stiffness[:, j, i] = k.get(f"K{i + 1}{j + 1}", 0.0)
-    none = np.zeros(len(grids[1]))
+    zeros = np.zeros(len(grids[1]))
     m, x, y, about_x, about_y, product = (
-        np.array(inertia.get(key, none), float) for key in ("mass", "cm_x", "cm_y", "i_edge", "i_flap", "i_cp")
+        np.array(inertia.get(key, zeros), float) for key in ("mass", "cm_x", "cm_y", "i_edge", "i_flap", "i_cp")
     )
     mass = np.zeros((len(m), 6, 6))
     for i, j, value in (

@@ -121,8 +121,8 @@ class ScikitFemBeam(BladeAdapter):
         for k, (name, sign) in enumerate(names):
             loads[int(tip[name][0]), k] = sign
         free = basis.complement_dofs(basis.get_dofs("root").flatten())
-        moved = splu(csc_array(K[free][:, free])).solve(loads[free])
-        return replace(weighed, flexibility=tip_flexibility(loads[free].T @ moved))
+        displacement = splu(csc_array(K[free][:, free])).solve(loads[free])
+        return replace(weighed, flexibility=tip_flexibility(loads[free].T @ displacement))
 
 
 def _hinges(blade: Blade, basis: Any) -> dict[int, float]:

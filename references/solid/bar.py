@@ -82,13 +82,13 @@ def modes(blade: Blade, omega: float, elements: int, count: int, solve: Solve) -
     requested = count + SPARE
     while True:
         spectrum = solve(bricks, material, requested)
-        kept = np.flatnonzero(~_turning(spectrum, sample(blade, 0.0)))[:count]
-        if len(kept) == count or len(spectrum.frequencies) < requested:
+        selected = np.flatnonzero(~_turning(spectrum, sample(blade, 0.0)))[:count]
+        if len(selected) == count or len(spectrum.frequencies) < requested:
             return replace(
                 spectrum,
-                frequencies=spectrum.frequencies[kept],
-                shapes=spectrum.shapes[kept],
-                damping=np.zeros(len(kept)),
+                frequencies=spectrum.frequencies[selected],
+                shapes=spectrum.shapes[selected],
+                damping=np.zeros(len(selected)),
             )
         requested *= 2
 

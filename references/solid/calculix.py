@@ -109,7 +109,10 @@ def _restrained(forces: Array, places: Index) -> list[str]:
     node, directions = places[0].ravel() + 1, places[0].size
     lines = []
     for dependent, row in zip(follow, ratio, strict=True):
-        terms = [(dependent, -1.0), *((other, value) for other, value in zip(lead, row, strict=True) if value)]
+        terms = [
+            (dependent, -1.0),
+            *((lead_freedom, value) for lead_freedom, value in zip(lead, row, strict=True) if value),
+        ]
         lines += ["*EQUATION", str(len(terms))]
         lines += [f"{node[k % directions]},{k // directions + 1},{value:.12g}" for k, value in terms]
     return lines
@@ -205,5 +208,5 @@ def _printed(text: str, omega: float) -> tuple[Array, Array]:
     table = np.array([row for row in rows if len(row) == 5 and row[0].isdigit()], float)
     if not len(table) or (table[:, 1] <= 0).any():
         raise CodeError(f"omega: {omega:g} rad/s: ccx found no modes, or an unstable steady state; lower the speed")
-    moved = [[line.split()[1:] for line in part.splitlines()[1:] if len(line.split()) == 4] for part in prints]
-    return table[:, 2], np.array(moved, float).transpose(2, 1, 0)
+    tables = [[line.split()[1:] for line in part.splitlines()[1:] if len(line.split()) == 4] for part in prints]
+    return table[:, 2], np.array(tables, float).transpose(2, 1, 0)

@@ -42,7 +42,7 @@ class Calculix(BladeAdapter):
             return (
                 None if hexahedra.version() else f"the tractions that hold the root need scikit-fem: {hexahedra.HINT}"
             )
-        return f"{other}; {reason}" if (other := bar.unsupported(blade)) else None
+        return f"{bar_reason}; {reason}" if (bar_reason := bar.unsupported(blade)) else None
 
     def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         """The lowest modes; see ``interface.BladeAdapter``. ``elements`` are rounded up to a multiple of ten.

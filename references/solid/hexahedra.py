@@ -126,10 +126,10 @@ def tangent(s: Solid, u: Array | None = None, stress: Array | None = None) -> ss
         A[:, :, :, range(3), range(3)] += S[e][:, :, :, None]
         A *= s.volume[e, :, None, None, None, None]
         n = len(A)
-        right = A.reshape(n, points, 27, 3) @ s.slopes[e].swapaxes(2, 3)
+        strain_slopes = A.reshape(n, points, 27, 3) @ s.slopes[e].swapaxes(2, 3)
         weighted = s.slopes[e].transpose(0, 2, 1, 3).reshape(n, size, 3 * points)
-        whole = (weighted @ right.reshape(n, 3 * points, 9 * size)).reshape(n, size, 3, 3, size)
-        out[:, :, e] = whole.transpose(2, 3, 0, 1, 4)
+        blocks = (weighted @ strain_slopes.reshape(n, 3 * points, 9 * size)).reshape(n, size, 3, 3, size)
+        out[:, :, e] = blocks.transpose(2, 3, 0, 1, 4)
     out = 0.5 * (out + out.transpose(1, 0, 2, 4, 3))  # equal but for rounding
     entry, rows, columns, order = _pattern(s.own, len(s.nodes))
     sums = np.array([np.bincount(entry, pair) for pair in out.reshape(9, -1)])
@@ -155,9 +155,11 @@ def _pattern(own: NDArray[np.intp], nodes: int) -> tuple[NDArray[np.intp], ...]:
     return entry, whole.indptr, whole.indices, whole.data
 
 
-def part(s: Solid, chosen: NDArray[np.bool_]) -> Solid:
+def part(s: Solid, selection: NDArray[np.bool_]) -> Solid:
     """The solid with only some of its elements (e,); the nodes remain."""
-    return replace(s, moduli=s.moduli[chosen], own=s.own[chosen], slopes=s.slopes[chosen], volume=s.volume[chosen])
+    return replace(
+        s, moduli=s.moduli[selection], own=s.own[selection], slopes=s.slopes[selection], volume=s.volume[selection]
+    )
 
 
 def internal_force(s: Solid, u: Array) -> Array:
@@ -217,9 +219,9 @@ def motions(s: Solid, clamp: Clamp | Array) -> ss.csr_array:
         return ss.csr_array(identity[:, ~fixed_by(clamp, s.nodes).T.ravel()])
     follow, lead, matrix = workless(clamp)
     ratio = ss.coo_array(matrix)
-    others = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=identity.shape)
-    kept = np.setdiff1d(np.arange(3 * len(s.nodes)), follow)
-    return ss.csr_array(ss.csc_array(identity + others)[:, kept])
+    couplings = ss.csc_array((ratio.data, (follow[ratio.row], lead[ratio.col])), shape=identity.shape)
+    independent = np.setdiff1d(np.arange(3 * len(s.nodes)), follow)
+    return ss.csr_array(ss.csc_array(identity + couplings)[:, independent])
 
 
 def steady_displacements(s: Solid, omega: float, free: Any) -> tuple[Array, Any]:

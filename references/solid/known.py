@@ -82,20 +82,20 @@ def _same_axis(solid: CurvedSolid, blade: Blade) -> bool:
 
 def _other_mount(blade: Blade) -> str:
     """Reason if a blade has a mounting that the solid has not."""
-    having = {
+    differing = {
         "precone": blade.precone,
         "pitch": blade.pitch,
         "tip mass": blade.tip_mass.any(),
         "a root that is not clamped": not clamped(blade),
         "kinks": blade.kinks,
     }
-    return ", ".join(f"{name}: this solid has none" for name, present in having.items() if present)
+    return ", ".join(f"{name}: this solid has none" for name, present in differing.items() if present)
 
 
-def _off(given: Array, expected: Array, allowed: float) -> str:
+def _off(actual: Array, expected: Array, allowed: float) -> str:
     """The largest difference of symmetric matrices (k, 6, 6), relative to their diagonals, in words, if above ``allowed``."""
     size = np.sqrt(np.diagonal(expected, axis1=1, axis2=2))
-    off = np.triu(np.abs(given - expected) / (size[:, :, None] * size[:, None]))  # below, the same but for rounding
+    off = np.triu(np.abs(actual - expected) / (size[:, :, None] * size[:, None]))  # below, the same but for rounding
     if np.nan_to_num(off, nan=np.inf).max() <= allowed:
         return ""
     k, i, j = np.unravel_index(int(np.nan_to_num(off, nan=np.inf).argmax()), off.shape)

@@ -130,10 +130,10 @@ def workless(forces: Array) -> tuple[NDArray[np.intp], NDArray[np.intp], Array]:
     Returns:
         ``follow`` (6,), ``lead`` (k,), ``ratio`` (6, k).
     """
-    near = np.flatnonzero(np.abs(forces).max(axis=1))
-    factors: Any = scipy.linalg.qr(forces[near].T, mode="economic", pivoting=True)
+    loaded = np.flatnonzero(np.abs(forces).max(axis=1))
+    factors: Any = scipy.linalg.qr(forces[loaded].T, mode="economic", pivoting=True)
     pivot = factors[2]
-    follow, lead = near[pivot[:6]], near[pivot[6:]]
+    follow, lead = loaded[pivot[:6]], loaded[pivot[6:]]
     return follow, lead, -np.asarray(np.linalg.solve(forces[follow].T, forces[lead].T), float)
 
 

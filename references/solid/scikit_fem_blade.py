@@ -51,8 +51,8 @@ class ScikitFemSolid(BladeAdapter):
     def unsupported(self, blade: Blade) -> str | None:
         """A reason unless the blade is the beam of a known solid, or uniform and equivalent to a bar."""
         solid, reason = recognised(blade)
-        if solid is None and (other := bar.unsupported(blade)):
-            return f"{other}; {reason}"
+        if solid is None and (bar_reason := bar.unsupported(blade)):
+            return f"{bar_reason}; {reason}"
         return None
 
     def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:

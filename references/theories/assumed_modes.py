@@ -65,7 +65,7 @@ def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
     EI[Z, Y] = EI[Y, Z]
     mass = integral(at.mass, v)
     tense = integral(at.weight * tension(blade, at.s), slope)
-    none = np.zeros_like(mass)
+    zeros = np.zeros_like(mass)
     centrifugal = {(Y, Y): tense - mass, (Z, Z): tense}
     shape = clamped_functions(at.ends, terms, STATIONS * blade.length)[0]
 
@@ -73,8 +73,8 @@ def bendings(blade: Blade, terms: int) -> tuple[Bending, ...]:
         pairs = [[(i, j) for j in planes] for i in planes]
         return Bending(
             elastic=np.block([[integral(at.weight * EI[p], curvature) for p in row] for row in pairs]),
-            centrifugal=np.block([[centrifugal.get(p, none) for p in row] for row in pairs]),
-            mass=np.block([[mass if i == j else none for i, j in row] for row in pairs]),
+            centrifugal=np.block([[centrifugal.get(p, zeros) for p in row] for row in pairs]),
+            mass=np.block([[mass if i == j else zeros for i, j in row] for row in pairs]),
             shape=shape_of([(plane, shape) for plane in planes]),
             planes=planes,
         )

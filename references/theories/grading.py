@@ -10,17 +10,17 @@ from .spectral import intervals
 Array = NDArray[np.float64]
 
 
-def element_ends(blade: Blade, elements: int, most: int) -> Array:
+def element_ends(blade: Blade, elements: int, limit: int) -> Array:
     """Arc lengths (n+1,) of the ends of at least ``elements`` elements.
 
     Every interval between kinks is divided into the same number of elements, so that properties are smooth within each
-    element and the order of convergence is preserved. A blade with more than ``most`` intervals has proportionally more
+    element and the order of convergence is preserved. A blade with more than ``limit`` intervals has proportionally more
     elements, so that refinements stay distinct. Within an interval the larger of the two ratios of bending stiffness is
     divided evenly between the elements, so that the curvature (moment over stiffness) is resolved.
     """
     ends = intervals(blade)
     at = sample(blade, ends)
-    return graded(ends, np.array([at.EI_y, at.EI_z]), -(-elements // min(len(ends) - 1, most)))
+    return graded(ends, np.array([at.EI_y, at.EI_z]), -(-elements // min(len(ends) - 1, limit)))
 
 
 def graded(ends: Array, bending: Array, pieces: int) -> Array:

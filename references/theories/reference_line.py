@@ -56,8 +56,8 @@ def line(blade: Blade, s: Array) -> ReferenceLine:
     piece = np.searchsorted(ends[1:-1], s.mean(1))
     for k in np.unique(piece):
         inside = (blade.stations >= ends[k]) & (blade.stations <= ends[k + 1])
-        given = blade.stations[inside], blade.curve[inside]
-        spline = make_interp_spline(*given, k=min(3, inside.sum() - 1))
+        points = blade.stations[inside], blade.curve[inside]
+        spline = make_interp_spline(*points, k=min(3, inside.sum() - 1))
         position[piece == k], slope[piece == k] = spline(s[piece == k]), spline.derivative()(s[piece == k])
     tangent = slope.reshape(-1, 3) / np.linalg.norm(slope.reshape(-1, 3), axis=1, keepdims=True)
     across = np.cross([1.0, 0.0, 0.0], tangent)
@@ -116,19 +116,19 @@ def lumps(blade: Blade, begins: Array, position: Array, axes: Array) -> tuple[Ar
     return mass, centre[:, [2, 0, 1], [1, 2, 0]], second + mass[:, None, None] * centre @ centre
 
 
-def element_ends(blade: Blade, elements: int, most: int, step_elements: bool = True) -> Array:
+def element_ends(blade: Blade, elements: int, limit: int, step_elements: bool = True) -> Array:
     """Arc lengths (n+1,) of the ends of at least ``elements`` elements; see ``grading`` for uncoupled blades.
 
     Every interval between two kinks of a property or of the line is divided into the same number of elements, so that
-    each element is smooth and the order of convergence is preserved. A blade with more than ``most`` intervals has
+    each element is smooth and the order of convergence is preserved. A blade with more than ``limit`` intervals has
     proportionally more elements, so that refinements stay distinct. A step of a property is one element at every refinement,
     unless it is so soft that this would be inaccurate. Without ``step_elements`` it is the end of the element before it.
     """
     ends, wide = _intervals(blade)
-    pieces = np.where(wide, -(-elements // min(int(wide.sum()), most)), 1)
+    pieces = np.where(wide, -(-elements // min(int(wide.sum()), limit)), 1)
     parts = [np.linspace(a, b, n, endpoint=False) for a, b, n in zip(ends[:-1], ends[1:], pieces, strict=True)]
-    kept = [part for part, kept in zip(parts, wide, strict=True) if kept or step_elements]
-    return np.concatenate([[0.0], np.concatenate(kept)[1:], ends[-1:]])
+    needed = [part for part, divided in zip(parts, wide, strict=True) if divided or step_elements]
+    return np.concatenate([[0.0], np.concatenate(needed)[1:], ends[-1:]])
 
 
 def steps(blade: Blade) -> int:

@@ -30,8 +30,8 @@ def cantilever(count: int, *, EI: float, GA: float, mass: float, rotary: float, 
         b2 = mass * length**4 * omega**2 / EI
         b, root = np.sqrt(b2), np.sqrt((r2 - s2) ** 2 + 4 / b2)
         alpha, beta = (b * np.sqrt((sign * (r2 + s2) + root) / 2) for sign in (-1, 1))
-        both = (b2 * (r2 - s2) ** 2 + 2) * np.cos(beta) + 2 / np.cosh(alpha)
-        return float(both - b * (r2 + s2) / np.sqrt(1 - b2 * r2 * s2) * np.tanh(alpha) * np.sin(beta))
+        sum_of_terms = (b2 * (r2 - s2) ** 2 + 2) * np.cos(beta) + 2 / np.cosh(alpha)
+        return float(sum_of_terms - b * (r2 + s2) / np.sqrt(1 - b2 * r2 * s2) * np.tanh(alpha) * np.sin(beta))
 
     unit = np.sqrt(EI / mass) / length**2
     grid = unit * np.arange(0.05, 12.0 * count**2, 0.1)

@@ -77,8 +77,8 @@ def with_generator(tree: TurbineTree, q: Array, M: Array, C: Array, K: Array) ->
     if drive.free:
         rotating[n if own else tree.hub] += drive.gear_ratio
     if tree.foot and tree.turbine.support.mass is not None:
-        moved = jacobian(tree, at, tree.foot - 1, np.zeros(3))
-        out[0][:n, :n] += moved.T @ tree.turbine.support.mass @ moved
+        jacobian_of_foot = jacobian(tree, at, tree.foot - 1, np.zeros(3))
+        out[0][:n, :n] += jacobian_of_foot.T @ tree.turbine.support.mass @ jacobian_of_foot
     out[0] += drive.generator * np.outer(rotating, rotating)
     if own:
         out[2][np.ix_([tree.hub, n], [tree.hub, n])] += drive.stiffness * np.array([[1.0, -1.0], [-1.0, 1.0]])
@@ -95,10 +95,10 @@ def shapes(tree: TurbineTree, q: Array, x: Complex) -> Complex:
     out = [_along(foot, [jacobian(tree, at, int(k), r) @ x for k, r in zip(tower.nodes, tower.reach, strict=True)],
                   tower, np.eye(3), turbine.tower.length)]  # fmt: skip
     for k, joints in enumerate(tree.blades):
-        turn = rotation(2, np.array(2.0 * np.pi * k / turbine.blades))
-        root = jacobian(tree, at, tree.hub, turn @ blade.base) @ x
+        rotation_matrix = rotation(2, np.array(2.0 * np.pi * k / turbine.blades))
+        root = jacobian(tree, at, tree.hub, rotation_matrix @ blade.base) @ x
         nodes = [jacobian(tree, at, int(joints[link]), r) @ x for link, r in zip(blade.nodes, blade.reach, strict=True)]
-        out.append(_along(root, nodes, blade, at.axes[tree.spin] @ turn, turbine.blade.length))
+        out.append(_along(root, nodes, blade, at.axes[tree.spin] @ rotation_matrix, turbine.blade.length))
     return np.concatenate(out, axis=1)
 
 

@@ -184,17 +184,17 @@ def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
         locked = 0.0 if drive.free else drive.stiffness
         hub = add(SPIN, spin, np.zeros(3), np.eye(3), locked)
     undeformed = _undeformed(blade)
-    roots, whole, joints = [], [], []
+    roots, blade_bodies, joints = [], [], []
     for k in range(turbine.blades):
-        turn = rotation(2, np.array(2.0 * np.pi * k / turbine.blades))
-        roots.append(blade.root.moved(np.zeros(3), turn))
-        whole.append(joined(blade.root, undeformed).moved(np.zeros(3), turn))
+        rotation_matrix = rotation(2, np.array(2.0 * np.pi * k / turbine.blades))
+        roots.append(blade.root.moved(np.zeros(3), rotation_matrix))
+        blade_bodies.append(joined(blade.root, undeformed).moved(np.zeros(3), rotation_matrix))
         first = len(strain)
         joints.append(np.arange(first, first + len(blade.strain)))
         strain += list(blade.strain)
         parent += [hub, *range(first, first + len(blade.strain) - 1)]
-        offset += [turn @ blade.offset[0], *blade.offset[1:]]
-        axes += [turn @ blade.axes[0], *blade.axes[1:]]
+        offset += [rotation_matrix @ blade.offset[0], *blade.offset[1:]]
+        axes += [rotation_matrix @ blade.axes[0], *blade.axes[1:]]
         bodies += list(blade.bodies)
         springs.append(blade.stiffness)
     own = of_matrix(turbine.hub)
@@ -217,7 +217,7 @@ def build(turbine: Turbine, tower: Chain, blade: Chain) -> TurbineTree:
         spin=spin,
         hub=hub,
         blades=np.array(joints),
-        rotor=joined(own, *whole),
+        rotor=joined(own, *blade_bodies),
         chains=(tower, blade),
         foot=foot,
     )

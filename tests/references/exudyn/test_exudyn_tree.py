@@ -240,7 +240,7 @@ def test_at_rest_only_the_derivative_by_velocities_is_left_out(monkeypatch: pyte
     tree = hinged_segments.hinge_segments(curved(), 8)
     M, C, K, _ = exudyn_tree.linearize(tree, 0.0)
     whole = system.linearized
-    monkeypatch.setattr(system, "linearized", lambda exu, mbs, still, full: whole(exu, mbs, full=full))
+    monkeypatch.setattr(system, "linearized", lambda exu, mbs, at_rest, full: whole(exu, mbs, full=full))
     mass, damping, stiffness, _ = exudyn_tree.linearize(tree, 0.0)
     np.testing.assert_array_equal(M, mass)
     np.testing.assert_array_equal(K, stiffness)

@@ -251,7 +251,7 @@ def test_a_mode_that_the_iteration_misses_is_found(doubted: bool, monkeypatch: p
         return SimpleNamespace(frequencies=result * (1.0 + 1e-8 * len(asked)), shapes=list(range(len(result))))
 
     rotor = SimpleNamespace(run=run)
-    frequencies, shapes = pybmodes_beam.moving(rotor, (1.0, 1.0), count=3, doubted=doubted, most=10)
+    frequencies, shapes = pybmodes_beam.moving(rotor, (1.0, 1.0), count=3, doubted=doubted, limit=10)
     assert asked == ([5, 10] if doubted else [5])
     expected = [1.0, 2.0, 2.0] if doubted else [1.0, 2.0, 3.0]
     np.testing.assert_allclose(frequencies, 2 * np.pi * np.array(expected), rtol=1e-6)
