@@ -1,4 +1,4 @@
-"""Named frequencies of a blade at each rotor speed, computed by core; ``tracked`` follows modes from speed to speed."""
+"""NamedMode frequencies of a blade at each rotor speed, computed by core; ``tracked`` follows modes from speed to speed."""
 
 import warnings
 from collections.abc import Iterator, Sequence
@@ -13,7 +13,7 @@ from ..judge.pairing import aligned, weights
 
 
 @dataclass(frozen=True)
-class Named:
+class NamedMode:
     """One natural frequency, with its number and its name at that speed, ``flapwise 2``.
 
     Attributes:
@@ -40,7 +40,7 @@ def sweep(
     count: int,
     accuracy: float = 1e-6,
     allow_large_strain: bool = False,
-) -> Iterator[list[Named]]:
+) -> Iterator[list[NamedMode]]:
     """Yield the ``count`` lowest modes (or all, if fewer) at each of ``speeds``, rad/s; see ``core.solve.modes``.
 
     Raises:
@@ -57,6 +57,6 @@ def sweep(
             raise unsteady(blade.name, omega, error) from error
         rows = zip(numbered(families(participation(modes, blade))), modes.frequencies, modes.uncertainty, strict=True)
         yield [
-            Named(float(omega), mode, name, float(frequency), float(uncertainty), modes.strain)
+            NamedMode(float(omega), mode, name, float(frequency), float(uncertainty), modes.strain)
             for mode, (name, frequency, uncertainty) in enumerate(rows, 1)
         ]

@@ -16,7 +16,7 @@ from ..input.errors import CaseError, rad_s
 from ..judge.pairing import weights
 from .diagram import CampbellRequest, solver
 from .labels import labels
-from .sweep import Named
+from .sweep import NamedMode
 from .tracking import Doubt, Solver, Tracks, track
 
 
@@ -31,7 +31,7 @@ class TrackedMode:
     """
 
     label: str
-    at: tuple[Named, ...]
+    at: tuple[NamedMode, ...]
     doubts: tuple[Doubt, ...] = ()
 
 
@@ -53,7 +53,7 @@ def tracked(
         TrackedMode(
             named[t],
             tuple(
-                Named(
+                NamedMode(
                     float(tracks.omega[k]),
                     int(tracks.place[k, t]) + 1,
                     names[k][tracks.place[k, t]],

@@ -10,7 +10,7 @@ from msgspec.structs import replace
 
 from ...core.blade import Blade
 from ...references.protocol.process import raised
-from ..campbell.sweep import Named, sweep
+from ..campbell.sweep import NamedMode, sweep
 from ..input.changes import PropertyChange, apply
 from ..input.errors import CaseError
 
@@ -93,7 +93,7 @@ def encoded(rows: Sequence[Row]) -> bytes:
     )
 
 
-def _filled(row: Row, mode: Named) -> Row:
+def _filled(row: Row, mode: NamedMode) -> Row:
     return replace(
         row,
         mode=mode.mode,
@@ -105,7 +105,7 @@ def _filled(row: Row, mode: Named) -> Row:
     )
 
 
-def _answers(task: Task) -> Iterator[tuple[float, list[Named] | str]]:
+def _answers(task: Task) -> Iterator[tuple[float, list[NamedMode] | str]]:
     """The modes at each speed, or the reason why there are none. The sweep begins again after a speed without modes."""
     try:
         blade = apply(task.blade, task.changes)

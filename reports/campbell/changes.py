@@ -9,11 +9,11 @@ from ..shared.units import Units
 from .tables import Sheet
 
 
-def sheet(changed: Sequence[ModeDifference], against: str, units: Units) -> Sheet:
+def sheet(differences: Sequence[ModeDifference], against: str, units: Units) -> Sheet:
     """The table: one row per mode and speed with both frequencies and the relative change.
 
     Args:
-        changed: the changes.
+        differences: the changes.
         against: name of the other blade.
         units: units of the table.
     """
@@ -26,9 +26,9 @@ def sheet(changed: Sequence[ModeDifference], against: str, units: Units) -> Shee
             percent(row.relative) if not isnan(row.other) else "no partner",
             f"{100 * row.uncertainty:.0e} %" if not isnan(row.other) else "–",
         )
-        for row in changed
+        for row in differences
     )
-    notes = dict.fromkeys(f"{row.name}, {units.at(row.omega)}: {row.note}" for row in changed if row.note)
+    notes = dict.fromkeys(f"{row.name}, {units.at(row.omega)}: {row.note}" for row in differences if row.note)
     head = ("mode", units.speed, f"other, {units.frequency}", f"this, {units.frequency}", "change", "±")
     text = "Modes are paired by shape (MAC); ± is the numerical uncertainty of the change"
     return Sheet(f"Changes against {against}", head, rows, ". ".join([text, *notes]) + ".")

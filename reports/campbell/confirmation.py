@@ -23,14 +23,15 @@ def sheet(diagram: Campbell, confirmed: Sequence[Confirmed], units: Units) -> Sh
         )
         for row in confirmed
     )
-    rest = dict.fromkeys(
+    disagreements = dict.fromkeys(
         f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}"
         for r in confirmed
         if r.others
     )
+    without = f" Without agreement: {'; '.join(disagreements)}." if disagreements else ""
     note = (
         "± is the numerical uncertainty of Southwell's own solver; codes are those that share nothing with it and agree within "
-        f"0.1 %; the last column has their largest difference.{' Without agreement: ' + '; '.join(rest) + '.' if rest else ''}"
+        f"0.1 %; the last column has their largest difference.{without}"
     )
     head = ("mode", units.speed, f"{units.frequency} ± u", "confirmed by", "difference")
     return Sheet(TITLE, head, rows, note)

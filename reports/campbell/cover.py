@@ -59,9 +59,9 @@ def properties(blade: Blade) -> str:
     """The sections on the blade's properties: facts with the conventions they follow, figure, and a table along the span."""
     conventions = [{"": name, "value": markdown.plain(text)} for name, text in facts(blade).items() if text]
     values = rows(blade, sections(blade))
-    some = picked(len(values))
-    along = [{COLUMNS[k]: cell(k, float(row[k])) for k in range(PROPERTIES)} for row in values[some]]
-    note = "" if len(some) == len(values) else f"\n{len(some)} of {len(values)} stations.\n"
+    indices = picked(len(values))
+    along = [{COLUMNS[k]: cell(k, float(row[k])) for k in range(PROPERTIES)} for row in values[indices]]
+    note = "" if len(indices) == len(values) else f"\n{len(indices)} of {len(values)} stations.\n"
     return (
         f"## Blade and conventions\n\n{markdown.table(conventions)}\n\n## Properties along the span\n\n"
         f"![Properties along the span](span.svg)\n\n{markdown.table(along)}\n{note}"

@@ -61,7 +61,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         )
         for m in diagram.margins
     ]
-    met = [
+    resonance_rows = [
         (
             e.kind,
             e.omega,
@@ -76,7 +76,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         )
         for e in diagram.encounters
     ]
-    where, sure, window = (
+    where, distance_columns, window = (
         ("kind", "omega_rad_s", "frequency_rad_s", "gap_rad_s"),
         "relative_uncertainty",
         ("from_rad_s", "to_rad_s"),
@@ -84,7 +84,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
     files: dict[str, tuple[Sequence[str], Iterable[Sequence[object]]]] = {
         "campbell.csv": (columns, lines),
         "resonances.csv": (
-            ("name", "per_rev", "omega_rad_s", "frequency_rad_s", sure, "from_operating_range", "touches"),
+            ("name", "per_rev", "omega_rad_s", "frequency_rad_s", distance_columns, "from_operating_range", "touches"),
             resonances,
         ),
         "margins.csv": (
@@ -92,8 +92,8 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             margins,
         ),
         "encounters.csv": (
-            (*where, sure, "gap_uncertainty_rad_s", "lower", "upper", "exchanged", *window, "whole"),
-            met,
+            (*where, distance_columns, "gap_uncertainty_rad_s", "lower", "upper", "exchanged", *window, "whole"),
+            resonance_rows,
         ),
     }
     for name, (heads, rows) in files.items():

@@ -28,23 +28,25 @@ def draw(diagram: Campbell, units: Units, heading: str) -> Figure | None:
 
     Colours are those of the motion, as in the diagram; dots are solved speeds.
     """
-    met = diagram.encounters[:MAX_PANELS]
-    if not met:
+    encounters = diagram.encounters[:MAX_PANELS]
+    if not encounters:
         return None
-    across = min(ACROSS, len(met))
-    rows, panel, low = -(-len(met) // across), 2.35 + 0.5 * (ACROSS - across), 0.25
+    across = min(ACROSS, len(encounters))
+    rows, panel, low = -(-len(encounters) // across), 2.35 + 0.5 * (ACROSS - across), 0.25
     with plot_style():
         height = low + 0.35 + rows * panel
         figure = Figure((WIDTH, height))
-        for place, e in enumerate(met):
-            row, column = divmod(place, across)
+        for position, e in enumerate(encounters):
+            row, column = divmod(position, across)
             bottom = (low + (rows - 1 - row) * panel + 0.3) / height
             axes = figure.add_axes(
                 (0.085 + column * WIDE / across, bottom, WIDE / across - 0.095, (panel - 1.0) / height)
             )
             _panel(axes, diagram, e, units)
-        more = len(diagram.encounters) - len(met)
-        below = "dots: speeds solved; colours as in the diagram" + (f"; {more} more in the table" if more else "")
+        remaining = len(diagram.encounters) - len(encounters)
+        below = "dots: speeds solved; colours as in the diagram" + (
+            f"; {remaining} more in the table" if remaining else ""
+        )
         title(figure, heading, below)
     return figure
 
@@ -86,16 +88,16 @@ def _panel(axes: Axes, diagram: Campbell, e: Encounter, units: Units) -> None:
     axes.set_title(_named(e, units), size=9.5, pad=17)
     axes.annotate(_words(diagram, e, units), (0, 1), (0, 6), "axes fraction", "offset points", size=7.5, color=MUTED)
     if e.kind == "veering":
-        at, middle, half = e.omega * units.speeds, e.frequency * units.frequencies, 0.5 * e.gap * units.frequencies
-        axes.plot([at, at], [middle - half, middle + half], color=INK, lw=1.0, zorder=2, marker="_", ms=5)
+        at, middle, half_gap = e.omega * units.speeds, e.frequency * units.frequencies, 0.5 * e.gap * units.frequencies
+        axes.plot([at, at], [middle - half_gap, middle + half_gap], color=INK, lw=1.0, zorder=2, marker="_", ms=5)
 
 
 def _window(diagram: Campbell, e: Encounter) -> tuple[float, float]:
     """The range of speeds shown (rad/s): the width of a veering, or one step of the speeds around a crossing."""
     speeds = diagram.request.speeds
     past = max(e.window[1] - e.omega, e.omega - e.window[0])
-    half = 0.75 * past if e.kind == "veering" else float(np.diff(speeds).max())
-    return max(speeds[0], e.omega - half), min(speeds[-1], e.omega + half)
+    half_width = 0.75 * past if e.kind == "veering" else float(np.diff(speeds).max())
+    return max(speeds[0], e.omega - half_width), min(speeds[-1], e.omega + half_width)
 
 
 def _named(e: Encounter, units: Units) -> str:

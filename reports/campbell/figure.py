@@ -98,8 +98,8 @@ def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:
     highest = np.nanmax(tracks.frequencies, axis=0)
     reached = highest[np.nanmin(tracks.frequencies, axis=0) < 1.1 * ray]
     split = 1.1 * max(ray, float(reached.max(initial=0.0)))
-    above = np.sort(np.nanmin(tracks.frequencies, axis=0))
-    if not len(reached) or split > SQUEEZED * top or not (above > split).any():
+    lowest = np.sort(np.nanmin(tracks.frequencies, axis=0))
+    if not len(reached) or split > SQUEEZED * top or not (lowest > split).any():
         return [(0.0, top * units.frequencies)]
     top = highest.max() + 0.18 * (highest.max() - split)  # room for the labels
     return [(0.0, split * units.frequencies), (split * units.frequencies, float(top) * units.frequencies)]
@@ -121,8 +121,8 @@ def _below(diagram: Campbell, units: Units) -> str:
     mesh = f"accuracy {request.accuracy:g}" if request.elements is None else f"{request.elements} elements"
     words = [f"{len(request.speeds)} speeds, {mesh}"]
     if len(diagram.tracks.omega) > len(request.speeds):
-        more = len(diagram.tracks.omega) - len(request.speeds)
-        words[0] += f", {more} intermediate {'speed' if more == 1 else 'speeds'} where modes come close"
+        inserted = len(diagram.tracks.omega) - len(request.speeds)
+        words[0] += f", {inserted} intermediate {'speed' if inserted == 1 else 'speeds'} where modes come close"
     if request.operating:
         low, high = (o * units.speeds for o in request.operating)
         words.append(f"operating {low:.4g} to {high:.4g} {units.speed}, margin {request.margin}")
@@ -158,8 +158,8 @@ def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[flo
 
 
 def _label(diagram: Campbell, t: int, units: Units) -> str:
-    frequency, sure = diagram.tracks.frequencies[-1, t], diagram.tracks.uncertainty[-1, t]
-    return f"{diagram.labels[t]}  {certain(float(frequency * units.frequencies), float(sure), 4)}"
+    frequency, uncertainty = diagram.tracks.frequencies[-1, t], diagram.tracks.uncertainty[-1, t]
+    return f"{diagram.labels[t]}  {certain(float(frequency * units.frequencies), float(uncertainty), 4)}"
 
 
 def _fine(omega: np.ndarray, frequency: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

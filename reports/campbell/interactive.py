@@ -97,14 +97,16 @@ def shapes(diagram: Campbell, k: int, units: Units) -> Any:
 
     blade = diagram.blade
     order, motion = scaled(diagram, k, arm=blade.length / 10)
-    rest, _ = curve.at(blade.stations, blade.curve, blade.kinks, STATIONS * blade.length)
+    undeformed, _ = curve.at(blade.stations, blade.curve, blade.kinks, STATIONS * blade.length)
     phases = np.exp(2j * np.pi * np.arange(PHASES) / PHASES)
 
     def surface(mode: int, phase: complex) -> dict[str, Any]:
-        moved = AMPLITUDE * blade.length * (motion[mode] * phase).real
-        half, angle = HALF_CHORD * blade.length, moved[:, 3]
+        displacement = AMPLITUDE * blade.length * (motion[mode] * phase).real
+        half_chord, angle = HALF_CHORD * blade.length, displacement[:, 3]
         edges = [
-            rest + moved[:, :3] + side * half * np.stack([0 * angle, np.cos(angle), np.sin(angle)], 1)
+            undeformed
+            + displacement[:, :3]
+            + side * half_chord * np.stack([0 * angle, np.cos(angle), np.sin(angle)], 1)
             for side in (-1, 1)
         ]
         x, y, z = np.round(np.stack(edges, 1), 4).transpose(2, 0, 1)
@@ -133,7 +135,7 @@ def shapes(diagram: Campbell, k: int, units: Units) -> Any:
         {"label": title, "method": "update", "args": [{"visible": [m == j for j in range(len(order))]}]}
         for m, title in enumerate(titles)
     ]
-    reach = (AMPLITUDE + HALF_CHORD) * blade.length + float(np.abs(rest[:, 1:]).max())
+    reach = (AMPLITUDE + HALF_CHORD) * blade.length + float(np.abs(undeformed[:, 1:]).max())
     side = {"range": [-reach, reach]}
     figure.update_layout(
         title=f"Mode shapes, {units.at(float(diagram.tracks.omega[k]))}, not to scale",

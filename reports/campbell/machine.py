@@ -80,12 +80,12 @@ def _unstable(diagram: MachineDiagram, units: Units) -> Sheet:
 def _changes(diagram: MachineDiagram, line: ModeLine, units: Units) -> str:
     """Where a line takes another name, after the first speed."""
     own = line.name.partition(" (")[0]
-    other = [k for k, name in enumerate(line.names) if name != own and diagram.omega[k]]
-    if not other:
+    changes = [k for k, name in enumerate(line.names) if name != own and diagram.omega[k]]
+    if not changes:
         return "–"
-    k = other[0]
-    more = f" and {len(other) - 1} more" if len(other) > 1 else ""
-    return f"{line.names[k]} at {units.at(float(diagram.omega[k]))}{more}"
+    k = changes[0]
+    remainder = f" and {len(changes) - 1} more" if len(changes) > 1 else ""
+    return f"{line.names[k]} at {units.at(float(diagram.omega[k]))}{remainder}"
 
 
 def _margins(diagram: MachineDiagram, units: Units) -> Sheet:

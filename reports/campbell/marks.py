@@ -77,18 +77,18 @@ def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
         if end <= left:
             continue
         axes.plot([left, end], [n * slope * left, n * slope * end], color=RAY, lw=0.7, zorder=1)
-        above = end < right * (1 - 1e-9)
-        at = end if above else _clear(diagram, n, left, right, top, units)
+        reaches_top = end < right * (1 - 1e-9)
+        at = end if reaches_top else _clear(diagram, n, left, right, top, units)
         axes.annotate(
             f"{n}P",
             (at, n * slope * at),
-            (0, 3 if above else 0),
+            (0, 3 if reaches_top else 0),
             textcoords="offset points",
             ha="center",
-            va="bottom" if above else "center",
+            va="bottom" if reaches_top else "center",
             size=7.5,
             color=MUTED,
-            bbox=None if above else {"facecolor": "white", "edgecolor": "none", "pad": 0.6},
+            bbox=None if reaches_top else {"facecolor": "white", "edgecolor": "none", "pad": 0.6},
             zorder=2,
             annotation_clip=False,
         )
@@ -105,11 +105,11 @@ def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, uni
     ray = n * places * units.frequencies / units.speeds
     distance = np.nanmin(np.abs(modes * units.frequencies - ray), axis=0) / top
     for e in diagram.encounters:  # also avoid the labels of veerings
-        over = ray / top - e.frequency * units.frequencies / top
-        near = np.abs(places - e.omega * units.speeds) < 0.09 * (right - left)
-        distance[near & (over > 0) & (over < 0.17) & (e.kind == "veering")] = 0.0
-    good = np.flatnonzero(distance > 0.035)
-    return float(places[good[0] if len(good) else distance.argmax()])
+        distance_below = ray / top - e.frequency * units.frequencies / top
+        is_near = np.abs(places - e.omega * units.speeds) < 0.09 * (right - left)
+        distance[is_near & (distance_below > 0) & (distance_below < 0.17) & (e.kind == "veering")] = 0.0
+    clear_places = np.flatnonzero(distance > 0.035)
+    return float(places[clear_places[0] if len(clear_places) else distance.argmax()])
 
 
 def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Units) -> None:
@@ -121,10 +121,10 @@ def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Uni
     grid = np.unique(np.concatenate([x[(x > low) & (x < high)], np.linspace(low, high, 401)]))
     line = np.interp(grid, x, y)
     rays = np.outer(request.per_rev, grid)
-    close = (np.abs(line - rays) < np.vectorize(request.margin.distance)(rays)).any(0)
-    shown = np.where(close, line, np.nan)
+    is_close = (np.abs(line - rays) < np.vectorize(request.margin.distance)(rays)).any(0)
+    marked = np.where(is_close, line, np.nan)
     axes.plot(
-        grid * units.speeds, shown * units.frequencies, color=RED, lw=6.5, alpha=0.22, solid_capstyle="butt", zorder=3
+        grid * units.speeds, marked * units.frequencies, color=RED, lw=6.5, alpha=0.22, solid_capstyle="butt", zorder=3
     )
 
 

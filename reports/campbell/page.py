@@ -48,19 +48,19 @@ def write(
     """
     folder.mkdir(parents=True, exist_ok=True)
     name, k = diagram.blade.name, shapes_at(diagram)
-    drawn = {
+    figure_of = {
         "campbell": figures.draw(diagram, units, f"{name}: natural frequencies versus rotor speed", user_results),
         "shapes": shapes.draw(diagram, k, units, f"{name}: mode shapes"),
         "span": span.draw(diagram.blade),
     }
     close = encounters.draw(diagram, units, f"{name}: modes that come close")
     if close:
-        drawn["encounters"] = close
-    written = [path for stem, figure in drawn.items() for path in save(figure, folder / stem)]
-    written += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
+        figure_of["encounters"] = close
+    paths = [path for stem, figure in figure_of.items() for path in save(figure, folder / stem)]
+    paths += [*csv_tables.write(diagram, folder), shapes.write_csv(diagram, k, folder)]
     page = folder / PAGE
     atomic.write(page, _page(diagram, k, units, command, origin, extra))
-    return (page, *written)
+    return (page, *paths)
 
 
 def shapes_at(diagram: Campbell) -> int:
@@ -70,8 +70,8 @@ def shapes_at(diagram: Campbell) -> int:
     """
     request, omega = diagram.request, diagram.tracks.omega
     target = request.operating[1] if request.operating else omega[-1]
-    asked = np.flatnonzero(diagram.tracks.asked)
-    return int(asked[np.abs(omega[asked] - target).argmin()])
+    requested = np.flatnonzero(diagram.tracks.asked)
+    return int(requested[np.abs(omega[requested] - target).argmin()])
 
 
 def _page(
@@ -102,5 +102,5 @@ def _elastodyn(diagram: Campbell, k: int, units: Units) -> str:
         fitted = polynomials(diagram.blade, omega, diagram.request.elements)
     except CaseError as error:
         return f"## ElastoDyn mode shapes\n\nNone: {error}.\n"
-    other = as_it_is(diagram.blade, diagram.tracks.solved[k])
-    return tables.markdown(shapes.coefficients(fitted, other, units, omega))
+    blade_shapes = as_it_is(diagram.blade, diagram.tracks.solved[k])
+    return tables.markdown(shapes.coefficients(fitted, blade_shapes, units, omega))

@@ -52,9 +52,9 @@ def legend(user_results: Sequence[UserResults], blade: str) -> list[Line2D]:
 def outside(user_results: Sequence[UserResults], diagram: Campbell, top: float) -> str:
     """How many points lie outside the diagram's speeds or above ``top`` (rad/s), as text; empty if none do."""
     low, high = diagram.request.speeds[0], diagram.request.speeds[-1]
-    every = [r for results in user_results for r in _of(results, diagram.blade.name)]
-    n = sum(r.omega < low - r.slack or r.omega > high + r.slack or r.value.value > top for r in every)
-    return f"{n} of {len(every)} added points outside" if n else ""
+    all_results = [r for results in user_results for r in _of(results, diagram.blade.name)]
+    n = sum(r.omega < low - r.slack or r.omega > high + r.slack or r.value.value > top for r in all_results)
+    return f"{n} of {len(all_results)} added points outside" if n else ""
 
 
 def _of(results: UserResults, blade: str) -> list[UserFrequency]:

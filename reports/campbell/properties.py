@@ -32,7 +32,7 @@ def facts(blade: Blade) -> dict[str, str]:
     hub, root = about_hub(blade), about_root(blade)
     x, y, z = np.where(np.abs(hub.centre) < 1e-9 * blade.length, 0.0, hub.centre)
     springs = zip(("x", "y", "z", "torsion", "flap", "lag"), blade.root, strict=True)
-    loose = [f"{name} {f'spring {k:.6g}' if k else 'free'}" for name, k in springs if np.isfinite(k)]
+    springs_text = [f"{name} {f'spring {k:.6g}' if k else 'free'}" for name, k in springs if np.isfinite(k)]
     bends = f"prebend {farthest(blade.curve[:, 2]):.5g} m, sweep {farthest(blade.curve[:, 1]):.5g} m (largest)"
     end, pitch = tip(blade), float(np.degrees(blade.pitch))
     return {
@@ -49,7 +49,7 @@ def facts(blade: Blade) -> dict[str, str]:
         "hub radius": f"{blade.hub_radius:.6g} m",
         "precone": f"{np.degrees(blade.precone):.5g}° (positive downwind)",
         "pitch": f"{pitch:.5g}° (positive with the leading edge downwind; as OpenFAST's BlPitch: {0.0 - pitch:.5g}°)",
-        "root": "clamped" if not loose else f"{', '.join(loose)}; otherwise clamped",
+        "root": "clamped" if not springs_text else f"{', '.join(springs_text)}; otherwise clamped",
         "reference axis": f"{'straight' if straight(blade) else bends}; {len(blade.stations)} stations",
         "axes": CONVENTIONS,
     }
@@ -67,9 +67,9 @@ def rows(blade: Blade, sampled: SectionProperties) -> Array:
     return np.column_stack([blade.stations, *stiff, sampled.mass_centre, sampled.tension_centre, sampled.shear_centre])
 
 
-def picked(stations: int, most: int | None = ROWS) -> NDArray[np.intp]:
-    """At most ``most`` evenly spaced stations, including both ends."""
-    return np.unique(np.linspace(0, stations - 1, min(stations, most or stations)).round().astype(int))
+def picked(stations: int, limit: int | None = ROWS) -> NDArray[np.intp]:
+    """At most ``limit`` evenly spaced stations, including both ends."""
+    return np.unique(np.linspace(0, stations - 1, min(stations, limit or stations)).round().astype(int))
 
 
 def cell(column: int, x: float) -> str:

@@ -67,16 +67,16 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
         low, panel = 0.75, 1.9
         height = low + 0.5 + rows * panel
         figure = Figure((WIDTH, height))
-        for place, t in enumerate(order):
-            row, column = divmod(place, ACROSS)
+        for position, t in enumerate(order):
+            row, column = divmod(position, ACROSS)
             left = 0.05 + column * 0.325
             bottom = (low + (rows - 1 - row) * panel + 0.12) / height
             axes = figure.add_axes((left, bottom, 0.205, (panel - 0.72) / height))
-            _panel(axes, shapes[place], arm)
+            _panel(axes, shapes[position], arm)
             hertz = diagram.tracks.frequencies[k, t] * units.frequencies
             name = diagram.labels.at(t, float(diagram.tracks.omega[k]))
-            shown = certain(float(hertz), float(diagram.tracks.uncertainty[k, t]), 4)
-            axes.set_title(f"{name}   {shown} {units.frequency}", size=9.5, pad=17)
+            frequency = certain(float(hertz), float(diagram.tracks.uncertainty[k, t]), 4)
+            axes.set_title(f"{name}   {frequency} {units.frequency}", size=9.5, pad=17)
             axes.annotate(
                 describe_fractions(diagram.energy_fractions[k, t]),
                 (0, 1),
@@ -86,7 +86,7 @@ def draw(diagram: Campbell, k: int, units: Units, heading: str) -> Figure:
                 size=7.5,
                 color=MUTED,
             )
-            if row == rows - 1 or place + ACROSS >= len(order):
+            if row == rows - 1 or position + ACROSS >= len(order):
                 axes.set_xlabel("fraction of span", size=8, labelpad=2)
             else:
                 axes.set_xticklabels([])
@@ -155,10 +155,10 @@ def _degrees(axes: Axes, arm: float) -> None:
     right.tick_params(colors=FAMILY_COLOURS["torsion"], labelsize=7.5)
 
 
-def coefficients(fitted: Sequence[Polynomial], other: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
+def coefficients(fitted: Sequence[Polynomial], blade_shapes: Sequence[Polynomial], units: Units, omega: float) -> Sheet:
     """The table of ElastoDyn's coefficients: of the principal blade, and for comparison of the unchanged blade."""
     rows = []
-    for kind, group in (("for ElastoDyn", fitted), ("of the given blade", other)):
+    for kind, group in (("for ElastoDyn", fitted), ("of the given blade", blade_shapes)):
         for p in group:
             numbers = [f"{c:.6f}".replace("-", "−") for c in p.coefficients]
             frequency = certain(p.frequency * units.frequencies, p.uncertainty)
@@ -187,15 +187,15 @@ def write_csv(diagram: Campbell, k: int, folder: Path) -> Path:
     """
     order, shapes = scaled(diagram, k)
     path = folder / "shapes.csv"
-    parts = [f"{what}_{part}" for what in ("axial", "edge", "flap", "torsion") for part in ("re", "im")]
+    parts = [f"{component}_{part}" for component in ("axial", "edge", "flap", "torsion") for part in ("re", "im")]
     head = ["name", "frequency_rad_s", "relative_uncertainty", "omega_rad_s", "fraction", "span_m", *parts]
     rows: list[list[object]] = []
     for t, shape in zip(order, shapes, strict=True):
-        sure = f"{diagram.tracks.uncertainty[k, t]:.6g}"
+        uncertainty = f"{diagram.tracks.uncertainty[k, t]:.6g}"
         omega = float(diagram.tracks.omega[k])
-        about = (diagram.labels.at(t, omega), float(diagram.tracks.frequencies[k, t]), sure, omega)
+        mode_facts = (diagram.labels.at(t, omega), float(diagram.tracks.frequencies[k, t]), uncertainty, omega)
         for x, motion in zip(STATIONS, shape, strict=True):
             numbers = [f"{v:.9g}" for z in motion for v in (z.real, z.imag)]
-            rows.append([*about, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
+            rows.append([*mode_facts, f"{x:.2f}", f"{x * diagram.blade.length:.9g}", *numbers])
     atomic.write_csv(path, head, rows)
     return path

@@ -60,33 +60,33 @@ def _finite(lines: Lines) -> Array:
 
 def _exponent(lines: Lines) -> int:
     """The power of ten of an axis's unit; 0 for short labels, and for a logarithmic axis, whose labels are powers of ten."""
-    shown = _finite(lines)
-    if not shown.size or _logarithmic(shown) or 0.1 <= shown.max() < 1e4:
+    finite = _finite(lines)
+    if not finite.size or _logarithmic(finite) or 0.1 <= finite.max() < 1e4:
         return 0
-    return int(np.floor(np.log10(shown.max())))
+    return int(np.floor(np.log10(finite.max())))
 
 
-def _logarithmic(shown: Array) -> bool:
-    return bool(shown.max() > DECADES * shown.min())
+def _logarithmic(values: Array) -> bool:
+    return bool(values.max() > DECADES * values.min())
 
 
 def _panel(axes: Axes, s: Array, lines: Lines, log: bool) -> None:
     dashes = ("-", (0, (5, 2)), (0, (1, 1.5)))
     for k, (name, values) in enumerate(lines):
-        drawn = np.isfinite(values)
-        label = name if drawn.all() else f"{name} rigid".strip()
-        axes.plot(s[drawn], values[drawn], color=COLOURS[k], linestyle=dashes[k], linewidth=1.5, label=label)
-    shown = _finite(lines)
-    if log and shown.size:
-        if _logarithmic(shown):
+        is_finite = np.isfinite(values)
+        label = name if is_finite.all() else f"{name} rigid".strip()
+        axes.plot(s[is_finite], values[is_finite], color=COLOURS[k], linestyle=dashes[k], linewidth=1.5, label=label)
+    finite = _finite(lines)
+    if log and finite.size:
+        if _logarithmic(finite):
             axes.set_yscale("log")
             decades(axes.yaxis, 6)
         else:
-            axes.set_ylim(0, 1.1 * shown.max())
-    elif not log and shown.size and np.abs(shown).max() < 1e-9:
+            axes.set_ylim(0, 1.1 * finite.max())
+    elif not log and finite.size and np.abs(finite).max() < 1e-9:
         axes.set_ylim(-1, 1)
         axes.text(0.5, 0.6, "zero throughout", transform=axes.transAxes, ha="center", color=MUTED)
-    if not shown.size:
+    if not finite.size:
         axes.set_yticks([])
         axes.text(0.5, 0.5, "rigid", transform=axes.transAxes, ha="center", color=MUTED)
     axes.set_xlim(0, s[-1])

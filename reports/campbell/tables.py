@@ -16,7 +16,7 @@ from ...cases.campbell.diagram import Campbell, Margin
 from ...cases.campbell.encounters import Encounter
 from ...cases.campbell.margins import Southwell
 from ...cases.campbell.required import UNITS, RequiredMargin
-from ...cases.campbell.sweep import Named
+from ...cases.campbell.sweep import NamedMode
 from ...core.participation import MIXED, describe_fractions
 from ..shared import table_columns
 from ..shared.certain import certain, relative, remarks
@@ -51,8 +51,8 @@ class Sheet:
 
 def sheets(diagram: Campbell, units: Units) -> tuple[Sheet, ...]:
     """All tables that have rows."""
-    every = (_modes, _margins, _resonances, _encounters, _doubts)
-    return tuple(s for s in (make(diagram, units) for make in every) if s.rows)
+    makers = (_modes, _margins, _resonances, _encounters, _doubts)
+    return tuple(s for s in (make(diagram, units) for make in makers) if s.rows)
 
 
 def _modes(diagram: Campbell, units: Units) -> Sheet:
@@ -64,8 +64,8 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
         fit = diagram.southwell[t]
         row = [diagram.labels[t], describe_fractions(diagram.energy_fractions[k[0], t])]
         for end in (0, -1):
-            f, sure = tracks.frequencies[end, t] * units.frequencies, tracks.uncertainty[end, t]
-            row.append(certain(float(f), float(sure)) if np.isfinite(f) else "–")
+            f, uncertainty = tracks.frequencies[end, t] * units.frequencies, tracks.uncertainty[end, t]
+            row.append(certain(float(f), float(uncertainty)) if np.isfinite(f) else "–")
         row.append(relative(float(np.nanmax(tracks.uncertainty[:, t]))))
         rise = tracks.frequencies[-1, t] / tracks.frequencies[0, t] - 1.0
         row.append(_rise(float(rise), float(tracks.uncertainty[0, t] + tracks.uncertainty[-1, t])))
@@ -90,19 +90,19 @@ def _rise(rise: float, doubt: float) -> str:
     """A change in percent with at most two decimals; ``doubt`` is the relative uncertainty of the ratio."""
     if not np.isfinite(rise):
         return "–"
-    sure = 100 * (1.0 + rise) * doubt
-    if not sure < 50:
+    uncertainty = 100 * (1.0 + rise) * doubt
+    if not uncertainty < 50:
         return "?"
-    places = 2 if sure <= 0.01 else max(int(-np.ceil(np.log10(sure))), 0)
+    places = 2 if uncertainty <= 0.01 else max(int(-np.ceil(np.log10(uncertainty))), 0)
     return f"{100 * rise:+.{places}f} %"
 
 
-def _southwell(fit: Southwell, sure: float) -> tuple[str, str]:
+def _southwell(fit: Southwell, uncertainty: float) -> tuple[str, str]:
     """Φ with at most four of the digits that are certain, and the residual if it exceeds the uncertainty."""
     size = abs(fit.coefficient)
     text = certain(fit.coefficient, fit.uncertainty / size if size else np.inf, 4)
-    least = max(sure, 1e-6)
-    return text, f"{100 * fit.residual:.2g} %" if fit.residual >= least else f"< {100 * least:.1g} %"
+    floor = max(uncertainty, 1e-6)
+    return text, f"{100 * fit.residual:.2g} %" if fit.residual >= floor else f"< {100 * floor:.1g} %"
 
 
 def _margins(diagram: Campbell, units: Units) -> Sheet:
@@ -125,8 +125,8 @@ def _margins(diagram: Campbell, units: Units) -> Sheet:
 
 
 def _margin(m: Margin, required: RequiredMargin) -> str:
-    shown = _percent if not required.unit else lambda value: f"{value / UNITS[required.unit]:+.3g}".replace("-", "−")
-    ends = "…".join(dict.fromkeys((shown(m.low), shown(m.high))))
+    text_of = _percent if not required.unit else lambda value: f"{value / UNITS[required.unit]:+.3g}".replace("-", "−")
+    ends = "…".join(dict.fromkeys((text_of(m.low), text_of(m.high))))
     return ends if m.kept else f"{TOO_NEAR} {ends}"
 
 
@@ -196,8 +196,8 @@ def gap(e: Encounter, units: Units, digits: int = 3) -> str:
 
 def _narrower(e: Encounter, units: Units) -> str:
     """An upper bound of the gap of a crossing, or ``none``."""
-    most = (e.gap + e.gap_uncertainty) * units.frequencies
-    return "?" if not np.isfinite(most) else f"< {most:.3g}" if most >= 1e-9 else "none"
+    upper_bound = (e.gap + e.gap_uncertainty) * units.frequencies
+    return "?" if not np.isfinite(upper_bound) else f"< {upper_bound:.3g}" if upper_bound >= 1e-9 else "none"
 
 
 def _doubts(diagram: Campbell, units: Units) -> Sheet:
@@ -261,7 +261,7 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
     """Remarks on large steady strains, an accuracy that was not reached, and crossings that may be missing."""
     tracks, request = diagram.tracks, diagram.request
     rows = [
-        Named(
+        NamedMode(
             omega,
             int(tracks.place[k, t]) + 1,
             diagram.labels.at(t, omega),
@@ -283,8 +283,8 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
 
 def margins_kept(diagram: Campbell) -> bool:
     """Whether every mode could be judged over the operating range and keeps its margins."""
-    judged = {m.track for m in diagram.margins}
-    return len(judged) == diagram.tracks.count and all(m.kept for m in diagram.margins)
+    judged_tracks = {m.track for m in diagram.margins}
+    return len(judged_tracks) == diagram.tracks.count and all(m.kept for m in diagram.margins)
 
 
 def verdict(diagram: Campbell, units: Units) -> str:
@@ -293,22 +293,22 @@ def verdict(diagram: Campbell, units: Units) -> str:
     if request.operating is None:
         return f"{len(diagram.resonances)} resonances in the speeds shown; no operating range given, so no margin is judged."
     low, high = request.operating
-    over = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
+    speed_range = f"{low * units.speeds:.4g} to {high * units.speeds:.4g} {units.speed}"
     broken = [m for m in diagram.margins if not m.kept]
-    judged = {m.track for m in diagram.margins}
-    rest = [diagram.labels.over(t, low, high) for t in range(diagram.tracks.count) if t not in judged]
-    but = f" Not judged, because not tracked over the whole range: {', '.join(rest)}." if rest else ""
+    judged_tracks = {m.track for m in diagram.margins}
+    unjudged = [diagram.labels.over(t, low, high) for t in range(diagram.tracks.count) if t not in judged_tracks]
+    but = f" Not judged, because not tracked over the whole range: {', '.join(unjudged)}." if unjudged else ""
     if not broken:
-        every = "Every other mode" if rest else "Every mode"
-        return f"{every} stays at least {request.margin} away from every n per revolution at {over}.{but}"
-    said = []
+        subject = "Every other mode" if unjudged else "Every mode"
+        return f"{subject} stays at least {request.margin} away from every n per revolution at {speed_range}.{but}"
+    sentences = []
     for t in dict.fromkeys(m.track for m in broken):
         margins = [m for m in broken if m.track == t]
-        met = ", ".join(f"{m.per_rev}P" for m in margins if m.least == 0.0)
-        near = ", ".join(f"{m.per_rev}P" for m in margins if m.least != 0.0)
+        crossed = ", ".join(f"{m.per_rev}P" for m in margins if m.least == 0.0)
+        near_by = ", ".join(f"{m.per_rev}P" for m in margins if m.least != 0.0)
         words = [
-            f"crosses {met}" if met else "",
-            f"comes within {request.margin} of {near}" if near else "",
+            f"crosses {crossed}" if crossed else "",
+            f"comes within {request.margin} of {near_by}" if near_by else "",
         ]
-        said.append(f"{diagram.labels.over(t, low, high)} {' and '.join(w for w in words if w)}")
-    return f"{TOO_NEAR} At {over}, {'; '.join(said)}.{but}"
+        sentences.append(f"{diagram.labels.over(t, low, high)} {' and '.join(w for w in words if w)}")
+    return f"{TOO_NEAR} At {speed_range}, {'; '.join(sentences)}.{but}"

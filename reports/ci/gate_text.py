@@ -44,10 +44,10 @@ def verdict(gate: Comparison, strict: bool) -> str:
         "better": len(gate.better),
         "new": len(gate.new),
     }
-    moved = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
-    moved += f"; {gate.measured} measured, not judged" if gate.measured else ""
+    summary = ", ".join(f"{n} {name}" for name, n in counts.items() if n) or "nothing moved"
+    summary += f"; {gate.measured} measured, not judged" if gate.measured else ""
     sign = "✔ gate passed" if gate.passed(strict) else "✘ gate failed"
-    return f"{sign}: {len(gate.after.cells)} cells against {_named(gate.before)}: {moved}"
+    return f"{sign}: {len(gate.after.cells)} cells against {_named(gate.before)}: {summary}"
 
 
 def _named(entry: Entry) -> str:
@@ -56,7 +56,7 @@ def _named(entry: Entry) -> str:
 
 def sections(gate: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
     """Title and rows of each non-empty table; those that can fail the gate come first."""
-    every = [
+    all_sections = [
         ("Worse", [_change(c, units) for c in gate.worse]),
         ("Wider target than before", [_loosened(c, units) for c in gate.loosened]),
         ("Gone", _gone(gate.gone, units)),
@@ -67,7 +67,7 @@ def sections(gate: Comparison, units: ByCase) -> list[tuple[str, list[Row]]]:
         ("Better", [_change(c, units) for c in gate.better]),
         ("Versions", [{"what": n, "from": a, "to": b} for n, (a, b) in gate.versions.items()]),
     ]
-    return [(title, rows) for title, rows in every if rows]
+    return [(title, rows) for title, rows in all_sections if rows]
 
 
 def _place(point: Point, units: ByCase) -> Row:
@@ -81,8 +81,8 @@ def _units(case: str, units: ByCase) -> Units:
 
 
 def _loosened(change: CellChange, units: ByCase) -> Row:
-    was = change.before.target if change.before else None
-    targets = [f"{100 * t:.3g} %" if t else "" for t in (was, change.after.target)]
+    earlier = change.before.target if change.before else None
+    targets = [f"{100 * t:.3g} %" if t else "" for t in (earlier, change.after.target)]
     return _place(change.after, units) | {
         "target before": targets[0],
         "target now": targets[1],
@@ -92,13 +92,13 @@ def _loosened(change: CellChange, units: ByCase) -> Row:
 
 def _change(change: CellChange, units: ByCase) -> Row:
     before, after = change.before, change.after
-    was = before.verdict if before else "not there"
+    earlier = before.verdict if before else "not there"
     of_case = _units(after.case, units)
     return _place(after, units) | {
         "from": _digits(before, of_case),
         "to": _digits(after, of_case),
         "change": "" if change.moved is None else f"{change.moved:+.1e}",
-        "verdict": after.verdict if was == after.verdict else f"{was} → {after.verdict}",
+        "verdict": after.verdict if earlier == after.verdict else f"{earlier} → {after.verdict}",
     }
 
 
@@ -116,7 +116,7 @@ def _gone(gone: Iterable[MissingAnswer], units: ByCase) -> list[Row]:
     rows = []
     for (case, code), group in groupby(sorted(gone, key=_column), key=_column):
         members = list(group)
-        instead = sorted({g.instead or "nothing" for g in members})
+        replacements = sorted({g.instead or "nothing" for g in members})
         rows.append(
             {
                 "case": case,
@@ -124,7 +124,7 @@ def _gone(gone: Iterable[MissingAnswer], units: ByCase) -> list[Row]:
                 "answers": str(len(members)),
                 "speeds": ", ".join(_units(case, units).at(w) for w in sorted({g.point.omega for g in members})),
                 "modes": ", ".join(str(k) for k in sorted({g.point.mode for g in members})),
-                "now": ", ".join(instead),
+                "now": ", ".join(replacements),
             }
         )
     return rows
@@ -144,23 +144,23 @@ def _undetected(control: Detection, units: ByCase) -> Row:
 
 
 def _property(change: PropertyChange) -> Row:
-    check, (was, now) = change.check, (p.verdict if p else "not there" for p in (change.before, change.after))
+    check, (earlier, current) = change.check, (p.verdict if p else "not there" for p in (change.before, change.after))
     size = check.difference if change.after else None
     return {
         "case": check.case,
         "check": f"{check.quantity}, {check.code}",
         "property": check.part or "all",
         "difference": "" if size is None else f"{size:+.2g}",
-        "verdict": now if was == now else f"{was} → {now}",
+        "verdict": current if earlier == current else f"{earlier} → {current}",
     }
 
 
 def tables(gate: Comparison, units: ByCase, width: int) -> Iterator[RenderableType]:
     """All tables for a console of ``width`` characters, each cut after ``SHOWN`` rows with the number of further ones."""
-    for title, every in sections(gate, units):
-        heads, rows = list(every[0]), [list(row.values()) for row in every[:SHOWN]]
-        if len(every) > SHOWN:
-            title += f": the first {SHOWN} of {len(every)}"
+    for title, rows_of_section in sections(gate, units):
+        heads, rows = list(rows_of_section[0]), [list(row.values()) for row in rows_of_section[:SHOWN]]
+        if len(rows_of_section) > SHOWN:
+            title += f": the first {SHOWN} of {len(rows_of_section)}"
         yield from table_columns.tables(heads, rows, width, title)
 
 
@@ -168,9 +168,9 @@ def markdown(gate: Comparison, strict: bool, units: ByCase) -> str:
     """Verdict and tables as Markdown for a job's summary; tables longer than ``ROWS`` are cut, with a note."""
     blocks = [f"**{plain(verdict(gate, strict))}**"]
     for title, rows in sections(gate, units):
-        shown = [{head: plain(value) for head, value in row.items()} for row in rows[:ROWS]]
+        cells = [{head: plain(value) for head, value in row.items()} for row in rows[:ROWS]]
         cut = f"\n\n… and {len(rows) - ROWS} more: see the log." if len(rows) > ROWS else ""
-        blocks.append(f"#### {title}\n\n{table(shown)}{cut}")
+        blocks.append(f"#### {title}\n\n{table(cells)}{cut}")
     return "\n\n".join(blocks) + "\n"
 
 
@@ -192,20 +192,20 @@ def annotations(gate: Comparison, folder: Path, units: ByCase) -> list[str]:
     ]
     for control, case in dict.fromkeys((c.control, c.case) for c in gate.undetected):
         rows.append(("error", case, f"{control}: a seeded fault that is no longer detected, or not tried"))
-    for case, what in dict.fromkeys((c.check.case, f"{c.check.quantity} by {c.check.code}") for c in gate.properties):
+    for case, check in dict.fromkeys((c.check.case, f"{c.check.quantity} by {c.check.code}") for c in gate.properties):
         parts = [
             f"{p.check.part or 'all properties'} ({_property(p)['verdict']})"
             for p in gate.properties
-            if (p.check.case, f"{p.check.quantity} by {p.check.code}") == (case, what)
+            if (p.check.case, f"{p.check.quantity} by {p.check.code}") == (case, check)
         ]
-        rows.append(("error", case, f"{what}: {', '.join(parts)}"))
+        rows.append(("error", case, f"{check}: {', '.join(parts)}"))
     rows += [("warning", p.case, text) for p, text in _by_column([(p, f"still {p.verdict}") for p in standing], units)]
     return [_command(level, files.get(case.partition("/")[0]), case, text) for level, case, text in rows]
 
 
 def _became(change: CellChange, units: ByCase) -> str:
-    was = change.before.verdict if change.before else "not there"
-    return f"{was} → {change.after.verdict}, {_digits(change.after, _units(change.after.case, units))}"
+    earlier = change.before.verdict if change.before else "not there"
+    return f"{earlier} → {change.after.verdict}, {_digits(change.after, _units(change.after.case, units))}"
 
 
 def _by_column(points: Sequence[tuple[Point, str]], units: ByCase) -> list[tuple[Point, str]]:
@@ -214,10 +214,10 @@ def _by_column(points: Sequence[tuple[Point, str]], units: ByCase) -> list[tuple
     for point, text in points:
         groups.setdefault((point.case, point.code), []).append((point, text))
     out = []
-    for (point, text), *rest in groups.values():
-        more = f"; and {len(rest)} more" if rest else ""
+    for (point, text), *others in groups.values():
+        remainder = f"; and {len(others)} more" if others else ""
         out.append(
-            (point, f"{point.code}: mode {point.mode}, {_units(point.case, units).at(point.omega)}: {text}{more}")
+            (point, f"{point.code}: mode {point.mode}, {_units(point.case, units).at(point.omega)}: {text}{remainder}")
         )
     return out
 

@@ -62,8 +62,8 @@ def _findings(gate: Comparison, strict: bool) -> dict[Key, str]:
 
 def _regressions(root: Element, gate: Comparison) -> None:
     """Add test cases for missing answers and for faults that are no longer detected."""
-    lost = [c for c in gate.properties if c.before and c.check.verdict != "fail"]
-    if not (gate.gone or gate.undetected or lost):
+    regressions = [c for c in gate.properties if c.before and c.check.verdict != "fail"]
+    if not (gate.gone or gate.undetected or regressions):
         return
     suite = SubElement(root, "testsuite", name="against the earlier run")
     for gone in gate.gone:
@@ -72,10 +72,10 @@ def _regressions(root: Element, gate: Comparison) -> None:
         _failed(test, "gone", f"the answer {_digits(p)} is missing; now {gone.instead or 'nothing'}")
     for control in gate.undetected:
         _lost(suite, control)
-    for change in lost:
-        check, now = change.check, change.after.verdict if change.after else "not there"
+    for change in regressions:
+        check, verdict = change.check, change.after.verdict if change.after else "not there"
         test = _test(suite, check.case, f"{check.quantity} by {check.code}: {check.part or 'no property'}")
-        _failed(test, "no longer checked", f"was {change.before.verdict if change.before else ''}; now {now}")
+        _failed(test, "no longer checked", f"was {change.before.verdict if change.before else ''}; now {verdict}")
 
 
 def _lost(suite: Element, control: Detection) -> None:
@@ -88,8 +88,8 @@ def _digits(point: Point) -> str:
 
 
 def _name(of: Cell | Point) -> str:
-    which = described(f"mode {of.mode} ({of.family})", of.quantity, of.where) if of.mode else "no answer"
-    return f"{of.code}: {which} at {of.omega:.6g} rad/s"
+    description = described(f"mode {of.mode} ({of.family})", of.quantity, of.where) if of.mode else "no answer"
+    return f"{of.code}: {description} at {of.omega:.6g} rad/s"
 
 
 def _test(suite: Element, case: str, name: str) -> Element:
@@ -97,25 +97,25 @@ def _test(suite: Element, case: str, name: str) -> Element:
 
 
 def _judge(test: Element, cell: Cell, finding: str) -> None:
-    said = ": ".join(part for part in (cell.verdict, summary.plus_minus(cell), cell.reason) if part)
+    message = ": ".join(part for part in (cell.verdict, summary.plus_minus(cell), cell.reason) if part)
     if finding:
-        _failed(test, finding.partition(":")[0], f"{finding}; {said}")
+        _failed(test, finding.partition(":")[0], f"{finding}; {message}")
     else:
-        _outcome(test, cell.verdict, said, cell.verdict in summary.BAD)
+        _outcome(test, cell.verdict, message, cell.verdict in summary.BAD)
 
 
 def _check(test: Element, check: PropertyCheck) -> None:
-    said = ": ".join(part for part in (check.verdict, check.reason) if part)
-    _outcome(test, check.verdict, said, check.verdict == "fail")
+    message = ": ".join(part for part in (check.verdict, check.reason) if part)
+    _outcome(test, check.verdict, message, check.verdict == "fail")
 
 
-def _outcome(test: Element, verdict: str, said: str, failed: bool) -> None:
+def _outcome(test: Element, verdict: str, message: str, failed: bool) -> None:
     if failed:
-        _failed(test, verdict, said)
+        _failed(test, verdict, message)
     elif verdict in SKIPPED:
-        SubElement(test, "skipped", message=_text(said))
+        SubElement(test, "skipped", message=_text(message))
     else:
-        SubElement(test, "system-out").text = _text(said)
+        SubElement(test, "system-out").text = _text(message)
 
 
 def _failed(test: Element, kind: str, message: str) -> None:

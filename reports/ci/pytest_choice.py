@@ -52,17 +52,17 @@ def tests_of(mark: pytest.Mark, config: pytest.Config, where: str) -> list[Chose
         raise pytest.UsageError(f"{where}: mark {MARK}: {error}") from error
     names = config.getoption("--southwell-cases")
     try:
-        some = [select(n) for n in names.split(",")] if names else None
-        cases = [select(n) for n in solver.cases] or some or _all()
+        named_cases = [select(n) for n in names.split(",")] if names else None
+        cases = [select(n) for n in solver.cases] or named_cases or _all()
         unique(blades(*cases), [], [])
-        only = {v.name for c in some or cases for v in c.variants}
+        variants = {v.name for c in named_cases or cases for v in c.variants}
     except CaseError as error:
         raise pytest.UsageError(f"{where}: {error}") from error
     return [
         Chosen(solver, case, variant, omega, k)
         for case in cases
         for variant in case.variants
-        if variant.name in only
+        if variant.name in variants
         for omega in variant.speeds.tolist()
         for k in range(1, case.text.compare.modes + 1)
     ]

@@ -54,8 +54,8 @@ def pytest_generate_tests(metafunc: pytest.Metafunc) -> None:
     mark = metafunc.definition.get_closest_marker(MARK)
     if mark is None:
         raise pytest.UsageError(f"{metafunc.definition.nodeid}: uses {FIXTURE} but has no mark {MARK}(solve=…)")
-    chosen = tests_of(mark, metafunc.config, metafunc.definition.nodeid)
-    metafunc.parametrize(FIXTURE, chosen, ids=[c.name for c in chosen], indirect=True)
+    choices = tests_of(mark, metafunc.config, metafunc.definition.nodeid)
+    metafunc.parametrize(FIXTURE, choices, ids=[c.name for c in choices], indirect=True)
 
 
 @dataclass(frozen=True)
@@ -76,13 +76,13 @@ class CellUnderTest:
         from ...cases.plan.column import ColumnError
         from ...cases.verify import user_solver
 
-        chosen = self.chosen
+        choice = self.chosen
         try:
-            run = self._once("run", lambda: user_solver.run(chosen.solver, chosen.case, chosen.variant))
+            run = self._once("run", lambda: user_solver.run(choice.solver, choice.case, choice.variant))
         except ColumnError as error:
             raise error.__cause__ or error from None
-        cells = [c for c in run.cells if c.omega == chosen.omega and c.mode in (0, chosen.mode)]
-        levels = [v for v in run.levels if v.omega == chosen.omega and v.mode == chosen.mode]
+        cells = [c for c in run.cells if c.omega == choice.omega and c.mode in (0, choice.mode)]
+        levels = [v for v in run.levels if v.omega == choice.omega and v.mode == choice.mode]
         self.request.node.user_properties.append((PROPERTY, _packed(cells, levels, run.settings)))
         explained: list[str] = []
         for cell in cells:
@@ -100,10 +100,10 @@ class CellUnderTest:
         """The cause of a known difference, if the mark lists one that covers it; otherwise empty."""
         from ...cases.judge.verdict import percent, unsigned
 
-        for pattern, (cause, most) in self.chosen.solver.known.items():
-            named = fnmatch.fnmatchcase(self.chosen.name, pattern) or fnmatch.fnmatchcase(cell.case, pattern)
-            if named and cell.difference is not None and abs(cell.difference) <= most:
-                return f"known, up to {unsigned(most)}: {cause}: {percent(cell.difference)}"
+        for pattern, (cause, limit) in self.chosen.solver.known.items():
+            matches = fnmatch.fnmatchcase(self.chosen.name, pattern) or fnmatch.fnmatchcase(cell.case, pattern)
+            if matches and cell.difference is not None and abs(cell.difference) <= limit:
+                return f"known, up to {unsigned(limit)}: {cause}: {percent(cell.difference)}"
         return ""
 
     def _message(self, cell: "Cell") -> str:
@@ -113,20 +113,20 @@ class CellUnderTest:
 
         where = f"{cell.case} at {cell.omega:.6g} rad/s, mode {cell.mode} ({cell.family})" if cell.mode else cell.case
         answer = "no answer" if cell.value is None else f"{cell.value:.7g} rad/s"
-        right = "" if cell.reference is None else f", not {cell.reference:.7g}"
+        expected = "" if cell.reference is None else f", not {cell.reference:.7g}"
         source = f" ({cell.code.partition(', ')[2]})" if cell.role == "table" else ""
         compare, variant = self.chosen.case.text.compare, self.chosen.variant
-        like = (
+        similarity = (
             ""
             if cell.difference is None
             else alike(cell, self._once("faults", partial(fault_effects.solve, variant, compare)))
         )
-        text = f"{where}: {self.chosen.solver.name}: {answer}{right}{source}: {cell.verdict}: {cell.reason}"
-        return f"{text}; {like}" if like else text
+        text = f"{where}: {self.chosen.solver.name}: {answer}{expected}{source}: {cell.verdict}: {cell.reason}"
+        return f"{text}; {similarity}" if similarity else text
 
-    def _once(self, what: str, make: Any) -> Any:
+    def _once(self, label: str, make: Any) -> Any:
         """Compute what all tests of one blade share, once."""
-        key = (what, id(self.chosen.solver), self.chosen.variant.name)
+        key = (label, id(self.chosen.solver), self.chosen.variant.name)
         if key not in self.solved:
             self.solved[key] = make()
         return self.solved[key]

@@ -25,15 +25,15 @@ def _planned(session: pytest.Session) -> list[list[Any]]:
     """
     planned, owners = [], {}
     for item in session.items:
-        chosen = getattr(item, "callspec", None) and item.callspec.params.get(FIXTURE)  # type: ignore[attr-defined]
-        if isinstance(chosen, Chosen):
+        choice = getattr(item, "callspec", None) and item.callspec.params.get(FIXTURE)  # type: ignore[attr-defined]
+        if isinstance(choice, Chosen):
             owner = item.nodeid.partition("[")[0]
-            first = owners.setdefault((chosen.variant.name, chosen.solver.name), owner)
+            first = owners.setdefault((choice.variant.name, choice.solver.name), owner)
             if first != owner:
                 raise pytest.UsageError(
-                    f"{first} and {owner}: both solvers are named {chosen.solver.name!r}: give name=…"
+                    f"{first} and {owner}: both solvers are named {choice.solver.name!r}: give name=…"
                 )
-            planned.append([chosen.variant.name, chosen.solver.name, chosen.omega, chosen.mode])
+            planned.append([choice.variant.name, choice.solver.name, choice.omega, choice.mode])
     return planned
 
 
@@ -152,7 +152,7 @@ class Report:
         cells = rows("cells", Cell)
         answered = {(c.case, c.code, c.omega, c.mode) for c in cells}
         missing = [t for t in self.planned if not {(*t[:3], t[3]), (*t[:3], 0)} & answered]
-        what = f"{len(missing)} of {len(self.planned)} tests gave no cell" if missing else ""
+        problem = f"{len(missing)} of {len(self.planned)} tests gave no cell" if missing else ""
         return Run(
             cells=cells,
             levels=rows("levels", Level),
@@ -160,7 +160,7 @@ class Report:
             command=self._command(),
             settings=rows("settings", Setting),
             plan=self._plan(),
-            unfinished=what if self.planned else "the plan of the run is unknown",
+            unfinished=problem if self.planned else "the plan of the run is unknown",
         )
 
     def _plan(self) -> "tuple[Planned, ...]":

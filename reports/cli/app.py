@@ -96,8 +96,10 @@ def build(listing: bool = False) -> App:
     )
     reports = str(__package__).rpartition(".")[0]
     for group, commands in zip(groups, COMMANDS.values(), strict=True):
-        for place, (name, target, line) in enumerate(commands):
-            built.command(f"{reports}.{target}", name=name, group=group, sort_key=place, help=line if listing else None)
+        for position, (name, target, line) in enumerate(commands):
+            built.command(
+                f"{reports}.{target}", name=name, group=group, sort_key=position, help=line if listing else None
+            )
     built.register_install_completion_command(help="Install completion for bash, zsh or fish, and exit.")
     return built
 
@@ -121,9 +123,9 @@ def main(arguments: Sequence[str] | None = None) -> None:
 def _status(words: list[str]) -> int:
     """Run a command; return its exit status."""
     try:
-        rest, allowed = _allowed(words)
+        remaining_words, allowed = _allowed(words)
         with allowed:
-            status = _run(rest)
+            status = _run(remaining_words)
         sys.stdout.flush()
     except UnusedCliTokensError as error:
         status = _reported(f"{' '.join(error.unused_tokens or ())}: unexpected argument; see --help", BAD_INPUT)
@@ -134,8 +136,8 @@ def _status(words: list[str]) -> int:
     except KeyboardInterrupt:
         status = _reported("interrupted", INTERRUPTED)
     except OSError as error:
-        what = f"{error.filename}: {error.strerror}" if error.filename else f"output: {error.strerror or error}"
-        status = _reported(what, BAD_INPUT)
+        message = f"{error.filename}: {error.strerror}" if error.filename else f"output: {error.strerror or error}"
+        status = _reported(message, BAD_INPUT)
     except Exception as error:
         from ...cases.input.errors import CaseError
         from ...references.protocol.registry import UnknownCodeError
@@ -143,23 +145,23 @@ def _status(words: list[str]) -> int:
         if isinstance(error, CaseError | UnknownCodeError):
             return _reported(error, BAD_INPUT)
         traceback.print_exc()
-        what = f"internal error: {type(error).__name__}: {error}: please report it, with the lines above"
-        status = _reported(what, INTERNAL)
+        message = f"internal error: {type(error).__name__}: {error}: please report it, with the lines above"
+        status = _reported(message, INTERNAL)
     return status
 
 
 def _run(words: list[str]) -> int:
-    chosen = build(listing=True) if words in ([], *([flag] for flag in app.help_flags)) else app
+    application = build(listing=True) if words in ([], *([flag] for flag in app.help_flags)) else app
     runs = bool(words) and words[0] in {name for commands in COMMANDS.values() for name, *_ in commands}
     with _one_thread() if runs else nullcontext():
-        return chosen(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
+        return application(words, exit_on_error=False, print_error=False, result_action="return_value") or PASSED
 
 
-def _reported(what: object, status: int) -> int:
+def _reported(message: object, status: int) -> int:
     """Print one line on why the command ended; return the status."""
     from ...cases.input.errors import brief
 
-    print(f"southwell: {brief(str(what))}", file=sys.stderr)
+    print(f"southwell: {brief(str(message))}", file=sys.stderr)
     return status
 
 
@@ -170,7 +172,7 @@ def _allowed(words: Sequence[str]) -> tuple[list[str], AbstractContextManager[ob
         UsageError: if ``ROOT`` has no value.
         CaseError: if its value is not a folder.
     """
-    rest, roots, outside = [], [], False
+    remaining_words, roots, outside = [], [], False
     remaining = iter(words)
     for word in remaining:
         option, equals, value = word.partition("=")
@@ -182,7 +184,7 @@ def _allowed(words: Sequence[str]) -> tuple[list[str], AbstractContextManager[ob
                 raise UsageError(f"{ROOT}: missing folder: give the folder that holds all files of the deck")
             roots.append(root)
         else:
-            rest.append(word)
+            remaining_words.append(word)
     stack = ExitStack()
     if outside or roots:
         from ...cases.input import files
@@ -190,7 +192,7 @@ def _allowed(words: Sequence[str]) -> tuple[list[str], AbstractContextManager[ob
         stack.enter_context(files.outside_allowed(outside))
         for root in roots:
             stack.enter_context(files.root_allowed(Path(root)))
-    return rest, stack
+    return remaining_words, stack
 
 
 def _one_thread() -> AbstractContextManager[object]:

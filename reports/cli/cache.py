@@ -25,13 +25,15 @@ app = App(
 @app.command(name="list")
 def listing() -> int:
     """List the stored answers by code: number, size, and when they were computed."""
-    opened = _opened()
+    user_store = _opened()
     table = Table(box=box.SIMPLE_HEAD, caption=str(store.path()))
     for head, side in (("code", "left"), ("answers", "right"), ("MB", "right"), ("first", "left"), ("last", "left")):
         table.add_column(head, justify=side, overflow="fold")  # pyright: ignore[reportArgumentType]
-    for kept in opened.kept():
-        first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when)) for when in (kept.first, kept.last))
-        table.add_row(kept.label, str(kept.count), f"{kept.size / 1e6:.1f}", first, last)
+    for entry in user_store.kept():
+        first, last = (
+            time.strftime("%Y-%m-%d %H:%M", time.localtime(seconds)) for seconds in (entry.first, entry.last)
+        )
+        table.add_row(entry.label, str(entry.count), f"{entry.size / 1e6:.1f}", first, last)
     console.output().print(table)
     return PASSED
 
@@ -39,11 +41,11 @@ def listing() -> int:
 @app.command
 def verify() -> int:
     """Check the integrity of every stored answer; status 1 if one is damaged (a run would compute it again)."""
-    opened = _opened()
-    bad = opened.damaged()
-    total = sum(kept.count for kept in opened.kept())
-    print(f"{total} answers, {len(bad)} damaged")
-    return FAILED if bad else PASSED
+    user_store = _opened()
+    damaged = user_store.damaged()
+    total = sum(entry.count for entry in user_store.kept())
+    print(f"{total} answers, {len(damaged)} damaged")
+    return FAILED if damaged else PASSED
 
 
 @app.command

@@ -24,19 +24,19 @@ def command(code: str, /) -> int:
     code
         Name of a code (listed by `southwell codes`), or import path `module:attribute` of an adapter.
     """
-    (described,) = describe([code])
-    if described.failure and described.failure.reason.startswith("import: "):
-        why = described.failure.reason.removeprefix("import: ")
+    (description,) = describe([code])
+    if description.failure and description.failure.reason.startswith("import: "):
+        why = description.failure.reason.removeprefix("import: ")
         raise UnknownCodeError(f"code: {code!r} cannot be loaded: {why}: {ADVICE}")
-    if described.turbines and not (described.blades or described.mechanisms):
+    if description.turbines and not (description.blades or description.mechanisms):
         why = "the checks are for codes that solve blades or mechanisms"
         raise UsageError(f"conform {code}: {why}: run southwell verify nrel-5mw-turbine --codes {code}")
-    checks = (*(CHECKS if described.blades else ()), *(FOR_MECHANISMS if described.mechanisms else ()))
-    results = outcomes(code, checks if not described.failure else CHECKS)
+    checks = (*(CHECKS if description.blades else ()), *(FOR_MECHANISMS if description.mechanisms else ()))
+    results = outcomes(code, checks if not description.failure else CHECKS)
     rows = [(MARKS[outcome.verdict], outcome.check.name, outcome.reason or outcome.check.law) for outcome in results]
     console = output()
     console.print(*tables(("", "check", "law, or reason"), rows, console.width), sep="\n")
     tally = Counter(outcome.verdict for outcome in results)
-    counted = ", ".join(f"{tally[verdict]} {verdict}" for verdict in MARKS if tally[verdict])
-    console.print(f"{described.title or described.name}: {counted}", markup=False)
+    tally_text = ", ".join(f"{tally[verdict]} {verdict}" for verdict in MARKS if tally[verdict])
+    console.print(f"{description.title or description.name}: {tally_text}", markup=False)
     return 1 if tally["fail"] or tally["not run"] else 0

@@ -42,9 +42,9 @@ def command(
     for name, run in runs.items():
         if message := incomplete(run):
             print(f"{name}: {message}")
-    kept = load(history) if history is not None else None
+    loaded_history = load(history) if history is not None else None
     try:
-        print(write(runs, kept, out))
+        print(write(runs, loaded_history, out))
     except OSError as error:
         raise CaseError(f"{error.filename}: {error.strerror}: give another --history or --out") from error
     return INCOMPLETE if any(run.unfinished for run in runs.values()) else PASSED

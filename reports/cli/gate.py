@@ -85,14 +85,14 @@ def command(
             "passed, or accept them with --failed-baseline"
         )
     units = {s.case: BY_KEY[s.unit] for s in run.settings}
-    missed = [c.control for c in run.controls if c.missed]
-    gate = compare(before, after, tolerance, missed)
+    undetected = [c.control for c in run.controls if c.missed]
+    gate = compare(before, after, tolerance, undetected)
     console = output()
     if message := incomplete(run):
         console.print(message, markup=False, soft_wrap=True)
     console.print(gate_text.verdict(gate, strict), markup=False, soft_wrap=True)
-    for shown in gate_text.tables(gate, units, console.width):
-        console.print(shown)
+    for table in gate_text.tables(gate, units, console.width):
+        console.print(table)
     if annotations:
         for line in gate_text.annotations(gate, Path(), units):
             print(line, file=commands())
@@ -120,12 +120,12 @@ def earlier(path: Path, commit: str) -> Entry:
     entries = load(path).entries
     if not entries:
         raise CaseError(f"--against {path}: contains no runs: add one with `southwell history add`")
-    chosen = [e for e in entries if e.commit.startswith(commit)]
-    if not chosen:
+    matches = [e for e in entries if e.commit.startswith(commit)]
+    if not matches:
         raise CaseError(
             f"--commit {commit}: not in {path}: {nearest(commit, dict.fromkeys(e.commit for e in entries))}"
         )
-    return chosen[-1]
+    return matches[-1]
 
 
 def _is_run(path: Path) -> bool:

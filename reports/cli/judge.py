@@ -43,7 +43,7 @@ def command(
     """
     machine = deck.read(fst) if fst else None
     judgement = judge(files)
-    compared = [compare(judged, machine) for judged in judgement.sets] if machine else []
+    compared = [compare(judged_set, machine) for judged_set in judgement.sets] if machine else []
     if json:
         print(msgspec.json.format(msgspec.json.encode(text.plain(judgement, compared))).decode())
     else:

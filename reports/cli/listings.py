@@ -24,19 +24,19 @@ from .errors import UsageError
 def cases() -> int:
     """List the cases that come with the package."""
     rows = []
-    loaded, absent = library.load_all()
+    loaded, failures = library.load_all()
     for name, case in loaded.items():
         first, *_ = settings(case)
         blades = ", ".join(v.name.partition("/")[2] for v in case.variants) if len(case.variants) > 1 else "1"
         rows.append((name, case.text.title, blades, first.facts["speeds"]))
     for name in library.mechanisms():
-        about = mechanism.subject(library.mechanism(name)).setting()
-        rows.append((name, about.title, "mechanism", about.facts["speeds"]))
+        description = mechanism.subject(library.mechanism(name)).setting()
+        rows.append((name, description.title, "mechanism", description.facts["speeds"]))
     for name in library.turbines():
-        about = turbine.of_case(library.turbine(name)).setting()
-        rows.append((name, about.title, "turbine", about.facts["speeds"]))
+        description = turbine.of_case(library.turbine(name)).setting()
+        rows.append((name, description.title, "turbine", description.facts["speeds"]))
     _print(("case", "what", "blades", "speeds"), rows)
-    for name, reason in absent.items():
+    for name, reason in failures.items():
         console.output().print(f"○ {name}: {reason}", style="dim", markup=False, soft_wrap=True)
     return PASSED
 

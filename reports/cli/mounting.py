@@ -62,17 +62,17 @@ class Mounting:
         Raises:
             CaseError: naming the invalid option.
         """
-        for option, value, least in (("--length", self.length, MIN_LENGTH), ("--hub-radius", self.hub_radius, 0.0)):
-            if value is not None and not least <= value <= MAX_LENGTH:
+        for option, value, minimum in (("--length", self.length, MIN_LENGTH), ("--hub-radius", self.hub_radius, 0.0)):
+            if value is not None and not minimum <= value <= MAX_LENGTH:
                 raise CaseError(f"{option} {value:g}: not a length in metres: give one, as in 61.5")
         if self.pitch is None and self.pitch_convention != "southwell":
             raise CaseError(f"--pitch-convention {self.pitch_convention}: no pitch is given: add --pitch")
-        pitch = angle("--pitch", self.pitch, most=MAX_PITCH)
+        pitch = angle("--pitch", self.pitch, limit=MAX_PITCH)
         return Mount(
             main=self.main,
             length=self.length,
             hub_radius=self.hub_radius,
-            precone=angle("--precone", self.precone, most=MAX_PRECONE),
+            precone=angle("--precone", self.precone, limit=MAX_PRECONE),
             pitch=-pitch if pitch and self.pitch_convention == "openfast" else pitch,
             subset=None if self.subset is None else _subset(self.subset),
             multipliers=None if self.multipliers is None else _multipliers(self.multipliers),
@@ -80,16 +80,16 @@ class Mounting:
         )
 
 
-def angle(option: str, degrees: float | None, most: float = 360.0) -> float | None:
+def angle(option: str, degrees: float | None, limit: float = 360.0) -> float | None:
     """Convert an angle to radians; None if not given.
 
     Raises:
-        CaseError: if it is not finite, or its absolute value exceeds ``most`` degrees.
+        CaseError: if it is not finite, or its absolute value exceeds ``limit`` degrees.
     """
     if degrees is not None and not isfinite(degrees):
         raise CaseError(f"{option} {degrees}: not a finite number of degrees: give one, as in 2.5")
-    if degrees is not None and abs(degrees) > most:
-        raise CaseError(f"{option} {degrees:g}: beyond ±{most:g} degrees: give degrees, as in 2.5")
+    if degrees is not None and abs(degrees) > limit:
+        raise CaseError(f"{option} {degrees:g}: beyond ±{limit:g} degrees: give degrees, as in 2.5")
     return None if degrees is None else radians(degrees)
 
 

@@ -48,14 +48,14 @@ def command(
         versions = [f"{name} {before} → {after}" for name, (before, after) in gate.versions.items()]
         lines = [gate_text.verdict(gate, strict=False), *filter(None, ["; ".join(counts), "; ".join(versions)])]
     with writing(folder):
-        written = [brief.write(run, folder, brief.Document(document, revision, lines))]
+        paths = [brief.write(run, folder, brief.Document(document, revision, lines))]
         if (report := folder / "report.md").is_file():
-            written.append(html.write(report))
-        written.append(html.write(written[0]))
+            paths.append(html.write(report))
+        paths.append(html.write(paths[0]))
         if find_spec("typst"):
             from ..documents import pdf
 
-            written.append(pdf.write(written[0]))
-        written.append(write_dashboard({folder.name or RESULTS: run}, None, folder / DASHBOARD))
-    print(f"{folder}: {', '.join(str(path.relative_to(folder)) for path in written)}")
+            paths.append(pdf.write(paths[0]))
+        paths.append(write_dashboard({folder.name or RESULTS: run}, None, folder / DASHBOARD))
+    print(f"{folder}: {', '.join(str(path.relative_to(folder)) for path in paths)}")
     return INCOMPLETE if run.unfinished else PASSED

@@ -31,17 +31,17 @@ def command(folder: Path, /, *, html: bool = False, pdf: bool = False) -> int:
         paper.require()
     run = run_in(folder if folder.is_dir() else folder / RESULTS)
     with writing(folder):
-        written = show(run, folder)
-    if written is None:
+        report_path = show(run, folder)
+    if report_path is None:
         return INCOMPLETE
     if html:
         from ..documents import html as page
 
-        print(page.write(written))
+        print(page.write(report_path))
     if pdf:
         from ..documents import pdf as paper
 
-        print(paper.write(written))
+        print(paper.write(report_path))
     return INCOMPLETE if run.unfinished else PASSED
 
 
@@ -54,11 +54,11 @@ def show(run: Run, folder: Path, executor: Executor | None = None) -> Path | Non
         report as matrix_report,  # not at the top: the figures take half of the start-up time
     )
 
-    keep = bool(run.unfinished) and (folder / RESULTS).exists()
-    report = None if keep else matrix_report.write(run, folder, executor)
+    keeps_earlier = bool(run.unfinished) and (folder / RESULTS).exists()
+    report = None if keeps_earlier else matrix_report.write(run, folder, executor)
     show_tables(run)
-    kept = f"{folder / RESULTS}: of an earlier run, unchanged"
-    message = kept if keep else f"{report}, {folder / (unfinished.NAME if run.unfinished else RESULTS)}"
+    notice = f"{folder / RESULTS}: of an earlier run, unchanged"
+    message = notice if keeps_earlier else f"{report}, {folder / (unfinished.NAME if run.unfinished else RESULTS)}"
     output().print(message, markup=False, soft_wrap=True)
     return report
 

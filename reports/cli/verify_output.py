@@ -50,6 +50,6 @@ class Output(Progressing):
 def status(run: Run) -> int:
     """The exit status of a run; why it was stopped goes to standard error."""
     if run.unfinished:
-        what = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
-        print(f"southwell: {run.unfinished}: {what}; {CONTINUE}", file=sys.stderr)
+        progress = f"{len(run.cells)} cells are kept" if run.cells else "no cell was finished"
+        print(f"southwell: {run.unfinished}: {progress}; {CONTINUE}", file=sys.stderr)
     return INTERRUPTED if run.unfinished == FROM_KEYBOARD else summary.status(run)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 from tabulate import tabulate
 
-from ...cases.campbell.sweep import Named
+from ...cases.campbell.sweep import NamedMode
 from ...cases.condense.condensed import Condensed, body, names
 from ...cases.condense.condensing import Condensation
 from ...core.modes import Modes
@@ -63,16 +63,16 @@ maps the motion of the second frame relative to the first to the wrench on the s
 def _modes(blade: Condensed, solved: Sequence[tuple[float, Modes]], units: Units) -> list[dict[str, str]]:
     rows = []
     for omega, modes in solved:
-        named = zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True)
-        for k, (name, f, sure) in enumerate(named, 1):
+        mode_rows = zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True)
+        for k, (name, f, uncertainty) in enumerate(mode_rows, 1):
             speed = f"{omega * units.speeds:.6g}"
             rows.append(
                 {
                     f"speed, {units.speed}": speed,
                     "mode": f"{k}",
                     "name": name,
-                    "frequency": certain(float(f * units.frequencies), float(sure)),
-                    "± relative": relative(float(sure)),
+                    "frequency": certain(float(f * units.frequencies), float(uncertainty)),
+                    "± relative": relative(float(uncertainty)),
                 }
             )
     return rows
@@ -81,16 +81,16 @@ def _modes(blade: Condensed, solved: Sequence[tuple[float, Modes]], units: Units
 def _remarks(blade: Condensed, solved: Sequence[tuple[float, Modes]], units: Units) -> list[str]:
     """Remarks on the uncertainty of the modes, and on large steady strains."""
     rows = [
-        Named(omega, k, name, float(f), float(sure), modes.strain)
+        NamedMode(omega, k, name, float(f), float(uncertainty), modes.strain)
         for omega, modes in solved
-        for k, (name, f, sure) in enumerate(
+        for k, (name, f, uncertainty) in enumerate(
             zip(names(blade.segments, modes), modes.frequencies, modes.uncertainty, strict=True), 1
         )
     ]
-    few = " It cannot be estimated from fewer than four segments." if len(blade.segments) < 4 else ""
+    advice = " It cannot be estimated from fewer than four segments." if len(blade.segments) < 4 else ""
     return [
         "± relative: uncertainty due to the number of segments, estimated from a half and a quarter of them. Errors of the "
-        f"finite element model, its mesh and its ties are not included.{few}",
+        f"finite element model, its mesh and its ties are not included.{advice}",
         *(f"{line}." for line in remarks(rows, None, units)),
     ]
 

@@ -114,12 +114,12 @@ def of_case(run: Run, case: str) -> dict[str, Any]:
     setting = summary.setting(run, case)
     checks = tuple(c for c in run.property_checks if c.case == case)
     settings = (setting,) if setting else ()
-    alone = replace(run, cells=tuple(cells), controls=(), settings=settings, property_checks=checks)
+    case_run = replace(run, cells=tuple(cells), controls=(), settings=settings, property_checks=checks)
     return {
         "name": case,
         "setting": asdict(setting) if setting else None,
-        "answer": evidence.verdict(alone),
-        "answered": WORST_FIRST.index(evidence.VERDICT_OF[evidence.word(alone)]),
+        "answer": evidence.verdict(case_run),
+        "answered": WORST_FIRST.index(evidence.VERDICT_OF[evidence.word(case_run)]),
         "verdict_counts": verdict_counts(run, case),
         "speed": u.speed,
         "frequency": u.frequency,
@@ -149,14 +149,14 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
     """The cells of a case by verdict, worst first: their number, and the largest difference relative to its target."""
     out, cells = [], [c for c in run.cells if c.case == case]
     for verdict, n in summary.counts(cells).items():
-        judged = [c for c in cells if c.verdict == verdict]
-        far = summary.largest(judged) if verdict == "known difference" else evidence.farthest(judged)
-        text = plus_minus(far) if far and size(far) is not None else ""
-        parts = (summary.column(far), far.name, summary.units(run, case).at(far.omega)) if far else ()
+        matches = [c for c in cells if c.verdict == verdict]
+        worst = summary.largest(matches) if verdict == "known difference" else evidence.farthest(matches)
+        text = plus_minus(worst) if worst and size(worst) is not None else ""
+        parts = (summary.column(worst), worst.name, summary.units(run, case).at(worst.omega)) if worst else ()
         where = ", ".join(part for part in parts if part)
-        more = f"; target {summary.allowed(far.target)}" if far and verdict != "known difference" else ""
+        target = f"; target {summary.allowed(worst.target)}" if worst and verdict != "known difference" else ""
         if n:
-            out.append({"verdict": WORST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{more}"})
+            out.append({"verdict": WORST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{target}"})
     return out
 
 
@@ -197,7 +197,10 @@ def codes(run: Run) -> list[dict[str, Any]]:
     out = []
     for name in code_names(run):
         cells = code_pages.own(run, name)
-        far, explained = evidence.farthest(cells), summary.largest(c for c in cells if c.verdict == "known difference")
+        worst, explained = (
+            evidence.farthest(cells),
+            summary.largest(c for c in cells if c.verdict == "known difference"),
+        )
         out.append(
             {
                 "name": name,
@@ -206,7 +209,7 @@ def codes(run: Run) -> list[dict[str, Any]]:
                 "version": run.versions.get(name, ""),
                 "shares": shared(run, name),
                 "counts": [[WORST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
-                "worst": _placed(far),
+                "worst": _placed(worst),
                 "known": _placed(explained),
             }
         )
@@ -223,12 +226,14 @@ def of_code(run: Run, name: str) -> dict[str, Any]:
     cells = code_pages.own(run, name)
     worst = []
     for case in dict.fromkeys(c.case for c in cells):
-        here = [c for c in cells if c.case == case]
-        far = summary.worst(here)
-        where = f"{far.name}, {summary.units(run, case).at(far.omega)}" if far else ""
-        reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
-        verdict = WORST_FIRST.index(summary.worst_verdict(here))
-        worst.append([case, page(case), verdict, len(here), plus_minus(far) if far else "", where, reason])
+        of_case_ = [c for c in cells if c.case == case]
+        worst_cell = summary.worst(of_case_)
+        where = f"{worst_cell.name}, {summary.units(run, case).at(worst_cell.omega)}" if worst_cell else ""
+        reason = worst_cell.reason if worst_cell else "; ".join(dict.fromkeys(c.reason for c in of_case_))
+        verdict = WORST_FIRST.index(summary.worst_verdict(of_case_))
+        worst.append(
+            [case, page(case), verdict, len(of_case_), plus_minus(worst_cell) if worst_cell else "", where, reason]
+        )
     return {
         "name": name,
         "version": run.versions.get(name, ""),

@@ -63,8 +63,8 @@ def moving(case: str, cells: Sequence[Cell], u: Units) -> dict[str, Any] | None:
 def _at(solved: Modes, names: Sequence[str], radius: float, u: Units) -> dict[str, Any]:
     out = []
     for k, (name, shape) in enumerate(zip(names, solved.shapes, strict=True)):
-        far, steep = np.abs(shape[:, :3]).max() / radius / FARTHEST, np.abs(shape[:, 3]).max() / STEEPEST
-        scaled = shape / [radius, radius, radius, 1.0] / max(far, steep)
+        deflection, slope = np.abs(shape[:, :3]).max() / radius / FARTHEST, np.abs(shape[:, 3]).max() / STEEPEST
+        scaled = shape / [radius, radius, radius, 1.0] / max(deflection, slope)
         label = f"{name} {1 + list(names[:k]).count(name)}"
         f = float(solved.frequencies[k]) * u.frequencies
         out.append({"name": label, "f": f, "re": scaled.real.round(5).tolist(), "im": scaled.imag.round(5).tolist()})

@@ -62,10 +62,10 @@ def _cells(entries: Sequence[Entry]) -> list[list[Any]]:
     for (case, code, omega, mode, quantity, where), points in _by_key(entries).items():
         values = [None if p is None else p.value for p in points]
         differences = [None if p is None else p.difference for p in points]
-        judged = [None if p is None else WORST_FIRST.index(p.verdict) for p in points]
+        verdicts = [None if p is None else WORST_FIRST.index(p.verdict) for p in points]
         family = [p.family for p in points if p is not None][-1]
         scale = QUANTITIES[quantity].scale
-        row = [case, code, omega, mode, family, _short(values, scale), _short(differences, 1.0), _short(judged)]
+        row = [case, code, omega, mode, family, _short(values, scale), _short(differences, 1.0), _short(verdicts)]
         out.append([*row, described("", quantity, where), scale is not None])
     return out
 
@@ -75,8 +75,8 @@ def _short(values: Sequence[float | None], scale: float | None = None) -> Any:
     first = values[0]
     if first is None:
         return None if all(v is None for v in values) else list(values)
-    near = MOVED * abs(first if scale is None else scale)
-    return first if all(v is not None and abs(v - first) <= near for v in values) else list(values)
+    limit = MOVED * abs(first if scale is None else scale)
+    return first if all(v is not None and abs(v - first) <= limit for v in values) else list(values)
 
 
 def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
@@ -88,17 +88,24 @@ def moves(entries: Sequence[Entry]) -> list[dict[str, Any]]:
             None if p is None or p.value is None or p.difference is None else reference(quantity, p.value, p.difference)
             for p in points
         ]
-        for who, values in ((code, own), (CORE, core)):
+        for source, values in ((code, own), (CORE, core)):
             for k in steps(values, quantity):
                 before = next(v for v in reversed(values[:k]) if v is not None)
                 at = omega, mode, described("", quantity, where)
-                changes[k, who, case, quantity][at] = _change(quantity, before, values[k])
+                changes[k, source, case, quantity][at] = _change(quantity, before, values[k])
     families = {(p.case, p.omega, p.mode): p.family for entry in entries for p in entry.cells}
     out = []
-    for (k, who, case, quantity), by_cell in changes.items():
-        (omega, mode, what), change = max(by_cell.items(), key=_size)
+    for (k, source, case, quantity), by_cell in changes.items():
+        (omega, mode, quantity_of_cell), change = max(by_cell.items(), key=_size)
         numbers = f"{len(by_cell)} {QUANTITIES[quantity].plural if len(by_cell) > 1 else QUANTITIES[quantity].name}"
-        step = {"run": k, "who": who, "case": case, "count": len(by_cell), "numbers": numbers, "what": what}
+        step = {
+            "run": k,
+            "who": source,
+            "case": case,
+            "count": len(by_cell),
+            "numbers": numbers,
+            "what": quantity_of_cell,
+        }
         out.append({**step, "change": change, "omega": omega, "mode": mode, "family": families[case, omega, mode]})
     return out
 

@@ -14,18 +14,18 @@ WORST = ("fail", "inconclusive", "not run", "pass", "not applicable")
 def of_matrix(run: Run) -> list[dict[str, Any]]:
     """One row for each check of each blade: its worst verdict, the properties with it, and the first reason."""
     out = []
-    for (case, what), group in groupby(run.property_checks, key=lambda c: (c.case, subject(c))):
+    for (case, subject_name), group in groupby(run.property_checks, key=lambda c: (c.case, subject(c))):
         checks = list(group)
         worst = min((c.verdict for c in checks), key=WORST.index)
-        named = [c for c in checks if c.verdict == worst]
+        worst_checks = [c for c in checks if c.verdict == worst]
         out.append(
             {
                 "case": case,
-                "check": what,
+                "check": subject_name,
                 "verdict": WORST_FIRST.index(worst),
-                "count": f"{len(named)} of {len(checks)}",
-                "properties": [c.part for c in named if c.part] if worst in ("fail", "inconclusive") else [],
-                "reason": next((c.reason for c in named if c.reason), ""),
+                "count": f"{len(worst_checks)} of {len(checks)}",
+                "properties": [c.part for c in worst_checks if c.part] if worst in ("fail", "inconclusive") else [],
+                "reason": next((c.reason for c in worst_checks if c.reason), ""),
             }
         )
     return out

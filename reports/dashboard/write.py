@@ -49,10 +49,10 @@ def write(runs: dict[str, Run], history: History | None, folder: Path) -> Path:
         atomic.write(folder / name, text)
     starts = {name: "index.html" if k == 0 else f"run-{k + 1}/index.html" for k, name in enumerate(runs)}
     for k, (name, run) in enumerate(runs.items()):
-        here = folder / f"run-{k + 1}" if k else folder
+        run_folder = folder / f"run-{k + 1}" if k else folder
         up = "../" if k else ""
         links = {n: up + path for n, path in starts.items()}
-        _run(run, name, here, {"up": up, "runs": links, "here": name, "past": history is not None})
+        _run(run, name, run_folder, {"up": up, "runs": links, "here": name, "past": history is not None})
     if history is not None:
         shared = {"up": "", "runs": starts, "here": "", "past": True}
         atomic.write(folder / "history.html", _page("history", "History", of_history(history), shared))

@@ -100,14 +100,14 @@ def _fold(state: StateBlock, first: int, last: int, silent: bool) -> bool:
 
 def _anchors(tokens: Sequence[Token]) -> None:
     """Give each heading an id as GitHub does; a repeated heading gets a number."""
-    seen: dict[str, int] = {}
+    repeats: dict[str, int] = {}
     for token, inline in pairwise(tokens):
         if token.type == "heading_open":
             name = unique = anchor(words(inline))
-            while unique in seen:
-                seen[name] += 1
-                unique = f"{name}-{seen[name]}"
-            seen[unique] = 0
+            while unique in repeats:
+                repeats[name] += 1
+                unique = f"{name}-{repeats[name]}"
+            repeats[unique] = 0
             token.attrSet("id", unique)
 
 

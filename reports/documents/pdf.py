@@ -78,12 +78,12 @@ def render(text: str, folder: Path) -> bytes:
             "muted": colours.MUTED,
         },
     }
-    sent = json.dumps(data, ensure_ascii=False)
-    fonts = typst.Fonts(not covered(sent), False, [str(FONTS)])
+    encoded = json.dumps(data, ensure_ascii=False)
+    fonts = typst.Fonts(not covered(encoded), False, [str(FONTS)])
     layout = files(__package__ or "").joinpath("print.typ").read_bytes()
     with TemporaryDirectory() as empty:
         try:
-            compiler = typst.Compiler(layout, empty, fonts, sys_inputs={"report": sent})
+            compiler = typst.Compiler(layout, empty, fonts, sys_inputs={"report": encoded})
             return cast(bytes, compiler.compile(format="pdf"))
         except typst.TypstError as error:
             raise PdfError(

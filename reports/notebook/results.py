@@ -52,14 +52,14 @@ class ModesResult(Modes):
     def to_frame(self) -> pd.DataFrame:
         """One row per mode: ``mode``, ``name``, ``frequency_hz``, ``frequency_rad_s``, ``uncertainty`` (relative),
         ``damping_ratio``."""
-        sure = self.uncertainty if len(self.uncertainty) else np.full(len(self.frequencies), np.nan)
+        uncertainty = self.uncertainty if len(self.uncertainty) else np.full(len(self.frequencies), np.nan)
         return pd.DataFrame(
             {
                 "mode": np.arange(1, len(self.frequencies) + 1),
                 "name": self.names,
                 "frequency_hz": self.frequencies / (2 * np.pi),
                 "frequency_rad_s": self.frequencies,
-                "uncertainty": sure,
+                "uncertainty": uncertainty,
                 "damping_ratio": self.damping,
             }
         )

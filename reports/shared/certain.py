@@ -3,7 +3,7 @@
 import math
 from collections.abc import Sequence
 
-from ...cases.campbell.sweep import Named
+from ...cases.campbell.sweep import NamedMode
 from ...core.element.measures import LARGE_STRAIN
 from .units import Units
 
@@ -35,7 +35,7 @@ def relative(uncertainty: float) -> str:
     return f"{uncertainty:.0e}" if math.isfinite(uncertainty) else "unknown"
 
 
-def remarks(rows: Sequence[Named], accuracy: float | None, units: Units) -> list[str]:
+def remarks(rows: Sequence[NamedMode], accuracy: float | None, units: Units) -> list[str]:
     """Remarks on large steady strains, and on an ``accuracy`` (relative) that was not reached."""
     out = []
     strained = {r.omega: r.strain for r in rows if r.strain > LARGE_STRAIN}

@@ -22,8 +22,8 @@ FONTS = f"{FONT},Verdana,sans-serif"
 def compact(svg: str) -> str:
     """The same drawing in fewer characters."""
     svg = UNSEEN.sub("", svg)
-    used = dict.fromkeys(name for tag in TAG.findall(svg) for _, name in REFERENCE.findall(tag))
-    names = {old: f"i{k}" for k, old in enumerate(used)}
+    referenced = dict.fromkeys(name for tag in TAG.findall(svg) for _, name in REFERENCE.findall(tag))
+    names = {old: f"i{k}" for k, old in enumerate(referenced)}
     looks: dict[str, str] = {}
 
     def shorter(tag: re.Match[str]) -> str:

@@ -100,22 +100,22 @@ class Watch(Display):
         running = ", ".join(step.running)
         self.bar.update(self.task, completed=step.done, total=step.total, description=running)
         if self.due(time.monotonic()):
-            shown = f"; running: {running}" if running else ""  # unknown on a cluster
-            self.console.print(f"{step.done} of {step.total} done{shown}", markup=False, soft_wrap=True)
+            current = f"; running: {running}" if running else ""  # unknown on a cluster
+            self.console.print(f"{step.done} of {step.total} done{current}", markup=False, soft_wrap=True)
 
 
 class Counter(Display):
     """Progress of many equal tasks, with the remaining time.
 
     Args:
-        what: name of the tasks, in the plural.
+        label: name of the tasks, in the plural.
         total: their number.
     """
 
-    def __init__(self, what: str, total: int) -> None:
+    def __init__(self, label: str, total: int) -> None:
         remaining = (TextColumn("remaining:"), TimeRemainingColumn())
-        super().__init__(TextColumn(what), *remaining)
-        self.what, self.total = what, total
+        super().__init__(TextColumn(label), *remaining)
+        self.label, self.total = label, total
         self.task = self.bar.add_task("", total=total)
         self.first: tuple[int, float] | None = None
 
@@ -126,9 +126,9 @@ class Counter(Display):
             self.first = done, now
             self.bar.reset(self.task, completed=done, total=self.total)
         self.bar.update(self.task, completed=done)
-        before, begun = self.first
-        if done > before and self.due(now):
-            remaining = timedelta(seconds=round((now - begun) / (done - before) * (self.total - done)))
+        first_done, start_time = self.first
+        if done > first_done and self.due(now):
+            remaining = timedelta(seconds=round((now - start_time) / (done - first_done) * (self.total - done)))
             self.console.print(
-                f"{done} of {self.total} {self.what}; remaining: {remaining}", markup=False, soft_wrap=True
+                f"{done} of {self.total} {self.label}; remaining: {remaining}", markup=False, soft_wrap=True
             )

@@ -23,8 +23,8 @@ class LogSafe:
             safe = piece.replace("##[", "## [")
             if self.blank and safe.lstrip().startswith("::"):
                 safe = safe.replace("::", ": :", 1)
-            ended = piece.splitlines()[0] != piece
-            self.blank = ended or (self.blank and not piece.strip())
+            ends_line = piece.splitlines()[0] != piece
+            self.blank = ends_line or (self.blank and not piece.strip())
             self.stream.write(safe)
         return len(text)
 

@@ -111,11 +111,11 @@ def power(exponent: int) -> str:
     return "10" + str(exponent).translate(_RAISED)
 
 
-def decades(axis: "Axis", most: int) -> None:
-    """Label at most ``most`` decades of a logarithmic axis: 10⁻⁴ as plain text, which is drawn faster than a formula."""
+def decades(axis: "Axis", limit: int) -> None:
+    """Label at most ``limit`` decades of a logarithmic axis: 10⁻⁴ as plain text, which is drawn faster than a formula."""
     from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
-    axis.set_major_locator(LogLocator(numticks=most))
+    axis.set_major_locator(LogLocator(numticks=limit))
     axis.set_major_formatter(FuncFormatter(lambda value, _: power(round(log10(value)))))
     axis.set_minor_formatter(NullFormatter())
 
@@ -165,8 +165,8 @@ def spread(targets: Sequence[float], gap: float) -> list[float]:
         blocks.append((centre, members))
     out = [0.0] * len(targets)
     for centre, members in blocks:
-        for place, k in enumerate(members):
-            out[k] = centre + gap * (place - (len(members) - 1) / 2)
+        for position, k in enumerate(members):
+            out[k] = centre + gap * (position - (len(members) - 1) / 2)
     return out
 
 

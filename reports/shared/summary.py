@@ -77,8 +77,8 @@ def status(run: Run) -> int:
     if run.unfinished:
         return INCOMPLETE
     blind = any(control.missed for control in run.controls)
-    bad = any(c.verdict in BAD for c in run.cells) or any(c.verdict == "fail" for c in run.property_checks)
-    return FAILED if not compared(run.cells) or blind or bad or under_confirmed(run) else PASSED
+    has_failed = any(c.verdict in BAD for c in run.cells) or any(c.verdict == "fail" for c in run.property_checks)
+    return FAILED if not compared(run.cells) or blind or has_failed or under_confirmed(run) else PASSED
 
 
 def worst_verdict(cells: Iterable[Cell]) -> Verdict:
@@ -124,8 +124,8 @@ def setting(run: Run, case: str) -> Setting | None:
 
 def units(run: Run, case: str) -> Units:
     """The units of a case; rad/s if the run does not state them."""
-    stated = setting(run, case)
-    return BY_KEY[stated.unit] if stated else RAD_S
+    case_setting = setting(run, case)
+    return BY_KEY[case_setting.unit] if case_setting else RAD_S
 
 
 def cases(run: Run) -> list[str]:
@@ -146,8 +146,8 @@ def table_column(cell: Cell) -> str:
 def columns(cells: Iterable[Cell], of: Callable[[Cell], str] = column) -> list[str]:
     """Names of columns: the source's discretisation, printed tables, then codes in the run's order."""
     first = ("discretisation", "table")
-    ranked = sorted(cells, key=lambda c: first.index(c.role) if c.role in first else len(first))
-    return list(dict.fromkeys(of(c) for c in ranked))
+    by_role = sorted(cells, key=lambda c: first.index(c.role) if c.role in first else len(first))
+    return list(dict.fromkeys(of(c) for c in by_role))
 
 
 def amount(value: float, target: float) -> str:
@@ -180,9 +180,9 @@ def wide(cell: Cell) -> str:
 
 def plus_minus(cell: Cell) -> str:
     """A difference and its uncertainty, such as ``+0.0021 % ± 0.0004 %``; the uncertainty may be unknown."""
-    shown = size(cell)
-    if shown is None:
+    value = size(cell)
+    if value is None:
         return ""
-    text = amount(shown, cell.target)
-    sign = "" if text.startswith("<") else "−" if shown < 0 else "+"
+    text = amount(value, cell.target)
+    sign = "" if text.startswith("<") else "−" if value < 0 else "+"
     return f"{sign}{text} ± {'unknown' if cell.uncertainty is None else amount(cell.uncertainty, cell.target)}"

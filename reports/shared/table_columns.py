@@ -37,8 +37,8 @@ def fitting(widths: Sequence[int], width: int) -> Iterator[list[int]]:
 def parts(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, keys: int = 1) -> Iterator[list[int]]:
     """Numbers of the columns of each part of a table that fits into ``width`` characters; all begin with the ``keys`` first."""
     widths = [_least(h, [row[k] for row in rows]) + BETWEEN for k, h in enumerate(head)]
-    others, space = widths[keys:], width - sum(widths[:keys])
-    yield from ([*range(keys), *(k + keys for k in part)] for part in (fitting(others, space) if others else [[]]))
+    movable, space = widths[keys:], width - sum(widths[:keys])
+    yield from ([*range(keys), *(k + keys for k in part)] for part in (fitting(movable, space) if movable else [[]]))
 
 
 def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title: str | None = None) -> Iterator[Table]:
@@ -53,9 +53,9 @@ def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title
             pad_edge=False,
         )
         columns = [[row[k] for row in rows] for k in part]
-        least = [_least(head[k], fields) for k, fields in zip(part, columns, strict=True)]
-        most = [max(map(len, (head[k], *fields))) for k, fields in zip(part, columns, strict=True)]
-        widths = shares(least, most, width - BETWEEN * len(part))
+        minimum = [_least(head[k], fields) for k, fields in zip(part, columns, strict=True)]
+        maximum = [max(map(len, (head[k], *fields))) for k, fields in zip(part, columns, strict=True)]
+        widths = shares(minimum, maximum, width - BETWEEN * len(part))
         for k, fields, own in zip(part, columns, widths, strict=True):
             add_column(out, head[k], fields, width=own)
         for row in rows:
@@ -63,17 +63,17 @@ def tables(head: Sequence[str], rows: Sequence[Sequence[str]], width: int, title
         yield out
 
 
-def shares(least: Sequence[int], most: Sequence[int], space: int) -> list[int]:
-    """Widths from ``least`` to ``most`` that share ``space``; columns that lack little are widened first.
+def shares(minimum: Sequence[int], maximum: Sequence[int], space: int) -> list[int]:
+    """Widths from ``minimum`` to ``maximum`` that share ``space``; columns that lack little are widened first.
 
     Rich itself narrows a column below its least width, and cuts what then exceeds the terminal.
     """
-    widths, spare = list(least), space - sum(least)
-    order = sorted(range(len(least)), key=lambda k: most[k] - least[k])
+    widths, spare = list(minimum), space - sum(minimum)
+    order = sorted(range(len(minimum)), key=lambda k: maximum[k] - minimum[k])
     for count, k in zip(range(len(order), 0, -1), order, strict=True):
-        more = max(0, min(most[k] - least[k], spare // count))
-        widths[k] += more
-        spare -= more
+        extra = max(0, min(maximum[k] - minimum[k], spare // count))
+        widths[k] += extra
+        spare -= extra
     return widths
 
 
@@ -103,8 +103,8 @@ def add_column(
         justify: side at which fields are aligned.
         width: of a column with words; by default what Rich gives it.
     """
-    least = _least(head, fields)
+    minimum = _least(head, fields)
     if _numbers(fields):
-        table.add_column(fill(head, least, break_long_words=False), justify=justify, no_wrap=True)
+        table.add_column(fill(head, minimum, break_long_words=False), justify=justify, no_wrap=True)
     else:
-        table.add_column(head, justify=justify, overflow="fold", min_width=least, width=width)
+        table.add_column(head, justify=justify, overflow="fold", min_width=minimum, width=width)

@@ -55,15 +55,15 @@ def page(path: Path) -> dict[str, str]:
 
 def _shown(source: str, names: dict[str, Any]) -> Iterator[str]:
     """Run a cell; what it prints, and the HTML or text of its last expression unless a semicolon ends it."""
-    body, shown = ast.parse(source).body, None
+    body, expression = ast.parse(source).body, None
     if body and isinstance(last := body[-1], ast.Expr) and not source.rstrip().endswith(";"):
-        body, shown = body[:-1], last.value
-    printed = StringIO()
-    with redirect_stdout(printed):
+        body, expression = body[:-1], last.value
+    buffer = StringIO()
+    with redirect_stdout(buffer):
         exec(compile(ast.Module(body, []), "<cell>", "exec"), names)
-        value = None if shown is None else eval(compile(ast.Expression(shown), "<cell>", "eval"), names)
-    if printed.getvalue():
-        yield f"```text\n{printed.getvalue()}```"
+        value = None if expression is None else eval(compile(ast.Expression(expression), "<cell>", "eval"), names)
+    if buffer.getvalue():
+        yield f"```text\n{buffer.getvalue()}```"
     if value is not None and not isinstance(value, Axes):
         html = getattr(value, "_repr_html_", None)
         yield f'<div class="output">{STYLE.sub("", html())}</div>' if html else f"```text\n{value!r}\n```"

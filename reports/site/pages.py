@@ -73,25 +73,25 @@ def report(folder: Path) -> Pages:
 
 def cases(folder: Path | None = None) -> Pages:
     """One page per case that comes with the package, with its results and the figures of a run in ``folder``, and an index."""
-    present, absent = library.load_all()
+    present, failures = library.load_all()
     subjects: dict[str, Sequence[Subject]] = {case.name: blades(case) for case in present.values()}
     subjects |= {name: [mechanism.subject(library.mechanism(name))] for name in library.mechanisms()}
     subjects |= {name: [turbine.of_case(library.turbine(name))] for name in library.turbines()}
-    rows = [_row(*each) for each in subjects.items()]
-    rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in absent.items()]
+    rows = [_row(*subject_item) for subject_item in subjects.items()]
+    rows += [{"case": f"`{name}`", "what": plain(why), "blades": "", "speeds": ""} for name, why in failures.items()]
     head = "# Cases\n\nWhat `southwell verify` runs, from the files in `cases/data/`.\n\n"
     stored = results_file.read(readme.ROWS).cells
-    drawn = [path.name for path in sorted((folder / "figures").glob("*.svg"))] if folder else []
-    pages = {f"cases/{name}.md": _case(name, own, stored, drawn) for name, own in subjects.items()}
+    file_names = [path.name for path in sorted((folder / "figures").glob("*.svg"))] if folder else []
+    pages = {f"cases/{name}.md": _case(name, own, stored, file_names) for name, own in subjects.items()}
     return {"cases/index.md": f"{head}{table(rows)}\n"} | pages
 
 
 def _row(name: str, subjects: Sequence[Subject]) -> dict[str, str]:
     first = subjects[0].setting()
-    what = f"[{plain(first.title)}]({name}.md)"
+    link = f"[{plain(first.title)}]({name}.md)"
     folder = _folder(name)
     count = f"a {folder.rstrip('s/')}" if folder else str(len(subjects))
-    return {"case": f"`{name}`", "what": what, "blades": count, "speeds": plain(first.facts["speeds"])}
+    return {"case": f"`{name}`", "what": link, "blades": count, "speeds": plain(first.facts["speeds"])}
 
 
 def _folder(name: str) -> str:
@@ -99,7 +99,7 @@ def _folder(name: str) -> str:
     return "mechanisms/" if name in library.mechanisms() else "turbines/" if name in library.turbines() else ""
 
 
-def _case(name: str, subjects: Sequence[Subject], stored: Sequence[Cell], drawn: Sequence[str]) -> str:
+def _case(name: str, subjects: Sequence[Subject], stored: Sequence[Cell], file_names: Sequence[str]) -> str:
     first, *_ = facts = [subject.setting() for subject in subjects]
     parts = [
         f"# {plain(first.title)}",
@@ -107,7 +107,7 @@ def _case(name: str, subjects: Sequence[Subject], stored: Sequence[Cell], drawn:
         f"*Source:* {plain(first.source)}.",
         f"```console\nsouthwell verify {name}\n```",
         f"File: `cases/data/{_folder(name)}{name}.toml`.",
-        *(part for s in facts for part in (_facts(s), _results(s.case, stored), _pictures(s.case, drawn)) if part),
+        *(part for s in facts for part in (_facts(s), _results(s.case, stored), _pictures(s.case, file_names)) if part),
     ]
     return "\n\n".join(parts) + "\n"
 
@@ -150,17 +150,17 @@ PICTURES = {
 """What the figures of a case show."""
 
 
-def _pictures(case: str, drawn: Sequence[str]) -> str:
+def _pictures(case: str, file_names: Sequence[str]) -> str:
     """The figures of a case that a run has drawn."""
-    named = {f"{file_name(case)}-{kind}.svg": text for kind, text in PICTURES.items()}
-    return "\n\n".join(f"![{text}](../figures/{name})" for name, text in named.items() if name in drawn)
+    captions = {f"{file_name(case)}-{kind}.svg": text for kind, text in PICTURES.items()}
+    return "\n\n".join(f"![{text}](../figures/{name})" for name, text in captions.items() if name in file_names)
 
 
 def codes(run: Run) -> Pages:
     """One page per code, and an index."""
-    described = code_pages.described()
-    out: Pages = {"codes/index.md": code_pages.index(run, described)}
-    return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in described}
+    descriptions = code_pages.described()
+    out: Pages = {"codes/index.md": code_pages.index(run, descriptions)}
+    return out | {f"codes/{code.name}.md": code_pages.page(run, code) for code in descriptions}
 
 
 def command_line() -> str:

@@ -50,7 +50,7 @@ def output(command: str, folder: Path, pattern: str) -> str:
     """The lines that a command prints in a folder and that match the pattern."""
     python = shlex.quote(sys.executable)
     run = f'southwell() {{ {python} -m southwell "$@"; }}; python() {{ {python} "$@"; }}'
-    done = subprocess.run(
+    process = subprocess.run(
         ["bash", "-c", f"{run}\n{command}"],
         cwd=folder,
         env=os.environ | {"COLUMNS": "110", "NO_COLOR": "1"},
@@ -59,7 +59,7 @@ def output(command: str, folder: Path, pattern: str) -> str:
         text=True,
         check=False,
     )
-    lines = [line.strip() for line in done.stdout.splitlines()]
+    lines = [line.strip() for line in process.stdout.splitlines()]
     return "".join(f"{line}\n" for line in lines if re.search(pattern, line))
 
 

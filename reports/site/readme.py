@@ -78,24 +78,25 @@ def five(run: Run) -> str:
     with any other verdict, and the worst difference of a published table.
     """
     rows = []
-    for case, what in SHOWN.items():
+    for case, description in SHOWN.items():
         codes = [c for c in run.cells if c.case == case and c.shares == "nothing" and c.role == "code"]
         answers = [c for c in codes if c.verdict not in ("not run", "not applicable")]
-        others = [c for c in answers if c.verdict != "pass"]
-        short = {
-            code: summary.worst_verdict(c for c in others if c.code == code)
-            for code in dict.fromkeys(c.code for c in others)
+        other_cells = [c for c in answers if c.verdict != "pass"]
+        worst_verdicts = {
+            code: summary.worst_verdict(c for c in other_cells if c.code == code)
+            for code in dict.fromkeys(c.code for c in other_cells)
         }
-        codes = [c for c in answers if c.code not in short]
+        codes = [c for c in answers if c.code not in worst_verdicts]
         worst = max(codes, key=lambda c: abs(c.difference or 0.0))
-        printed = summary.worst(c for c in run.cells if c.case == case and c.role == "table")
+        published_cell = summary.worst(c for c in run.cells if c.case == case and c.role == "table")
         rows.append(
             {
-                "blade": what,
+                "blade": description,
                 "agree with Southwell": ", ".join(dict.fromkeys(plain(c.code) for c in codes)),
                 "largest difference": summary.plus_minus(worst),
-                "other verdicts": ", ".join(f"{plain(code)} ({verdict})" for code, verdict in short.items()) or "–",
-                "published table": _published(printed) if printed else "–",
+                "other verdicts": ", ".join(f"{plain(code)} ({verdict})" for code, verdict in worst_verdicts.items())
+                or "–",
+                "published table": _published(published_cell) if published_cell else "–",
             }
         )
     return f"{table(rows)}\n"
@@ -110,18 +111,18 @@ def _published(cell: Cell) -> str:
 def block(run: Run) -> str:
     """The site's tables of results: every case by every code, and Table 1 of the paper."""
     table1 = [c for c in run.cells if c.case == CASE and c.omega == OMEGA and c.mode]
-    made = ", ".join(f"{name} {version}" for name, version in run.versions.items())
-    none = unasked(run)
+    versions = ", ".join(f"{name} {version}" for name, version in run.versions.items())
+    omitted = unasked(run)
     return f"""{heat(run)}
 
 Each field shows the worst verdict of all modes and speeds, and the largest difference from Southwell's own solver with that
-verdict (a known difference is from it with all effects). {LEGEND}.{f" Omitted columns: {none}." if none else ""}
+verdict (a known difference is from it with all effects). {LEGEND}.{f" Omitted columns: {omitted}." if omitted else ""}
 
 ## {CASE} at {summary.units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 
 {comparison(table1, summary.units(run, CASE))}
 
-Written by `{run.command}` with {made}.
+Written by `{run.command}` with {versions}.
 """
 
 
@@ -148,15 +149,15 @@ def console(output: str) -> str:
     return "\n".join(["```console", f"$ {COMMAND}", *lines, "…", "```", ""])
 
 
-def put(text: str, new: str, what: str) -> str:
-    """Replace the text between the markers of ``what`` in ``text`` by ``new``.
+def put(text: str, new: str, marker: str) -> str:
+    """Replace the text between the markers of ``marker`` in ``text`` by ``new``.
 
     Raises:
         ValueError: if the markers are missing.
     """
-    first, last = BEGIN.format(what), END.format(what)
-    head, begin, rest = text.partition(first)
-    _, end, tail = rest.partition(last)
+    first, last = BEGIN.format(marker), END.format(marker)
+    head, begin, after_begin = text.partition(first)
+    _, end, tail = after_begin.partition(last)
     if not (begin and end):
         raise ValueError(f"README: the markers {first} and {last} are missing: put them where the part belongs")
     return f"{head}{first}\n\n{new}\n{last}{tail}"

@@ -33,14 +33,14 @@ def by_line(points: Sequence[Point], titles: Mapping[str, str]) -> list[dict[str
     for line in dict.fromkeys(p.line for p in points):
         measured = [p for p in points if p.line == line]
         off = [100.0 * p.validation.error / p.validation.measured for p in measured]
-        seen = sum(p.validation.visible > 0.0 for p in measured)
+        visible_count = sum(p.validation.visible > 0.0 for p in measured)
         rows.append(
             {
                 "line": line,
                 **({"mode": titles[line]} if titles else {}),
                 "points": str(len(measured)),
                 "E, % of D": f"{min(off):+.1f} to {max(off):+.1f}".replace("-", "−"),
-                "model error visible": f"{seen} of {len(measured)}",
+                "model error visible": f"{visible_count} of {len(measured)}",
             }
         )
     return rows

@@ -54,9 +54,13 @@ def render(run: Run, folder: Path, document: Document) -> str:
     """The page as Markdown."""
     cases = summary.cases(run)
     name = plain(cases[0]) if len(cases) == 1 else f"{len(cases)} cases"
-    ranked = sorted(cases, key=lambda case: -_used(run, case))
-    figure = next((f for case in ranked if (folder / (f := f"figures/{file_name(case)}-campbell.svg")).is_file()), "")
-    rest = f" {ROWS} of {len(cases)}, the smallest margins first; the report has all." if len(cases) > ROWS else ""
+    by_margin = sorted(cases, key=lambda case: -_used(run, case))
+    figure = next(
+        (f for case in by_margin if (folder / (f := f"figures/{file_name(case)}-campbell.svg")).is_file()), ""
+    )
+    selection_note = (
+        f" {ROWS} of {len(cases)}, the smallest margins first; the report has all." if len(cases) > ROWS else ""
+    )
     parts = [
         f"# Verification of {name}",
         *report.marked(run, [line for line in (summary.incomplete(run), evidence.answer(run)) if line]),
@@ -69,8 +73,8 @@ def render(run: Run, folder: Path, document: Document) -> str:
         f"![Natural frequencies versus rotor speed]({figure})" if figure else "",
         "## Margins to the target",
         f"*used*: largest |difference| + uncertainty of the answers that share nothing with Southwell's own solver, in % "
-        f"of the target.{rest}",
-        table([_margin(run, case) for case in ranked[:ROWS]]),
+        f"of the target.{selection_note}",
+        table([_margin(run, case) for case in by_margin[:ROWS]]),
     ]
     return "\n\n".join(part for part in parts if part) + "\n"
 
@@ -106,8 +110,8 @@ def _independent(run: Run, case: str) -> list[Witness]:
 def _used(run: Run, case: str) -> float:
     """Largest |d| + u of a case's independent answers, relative to their target; 0 without one."""
     names = {w.name for w in _independent(run, case)}
-    judged = (c for c in run.cells if c.case == case and c.code in names and c.verdict in ("pass", *summary.BAD))
-    return max((_size(c.difference, c.uncertainty) / c.target for c in judged), default=0.0)
+    considered = (c for c in run.cells if c.case == case and c.code in names and c.verdict in ("pass", *summary.BAD))
+    return max((_size(c.difference, c.uncertainty) / c.target for c in considered), default=0.0)
 
 
 def _size(difference: float | None, uncertainty: float | None) -> float:

@@ -35,8 +35,10 @@ def verdicts(cells: Sequence[Cell]) -> str:
     parts = []
     for verdict, n in summary.counts(cells).items():
         if n:
-            far = summary.largest(c for c in cells if c.verdict == verdict)
-            parts.append(f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(far)}' if far else ''}")
+            largest = summary.largest(c for c in cells if c.verdict == verdict)
+            parts.append(
+                f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(largest)}' if largest else ''}"
+            )
     return "; ".join(parts)
 
 
@@ -49,14 +51,14 @@ def comparison(cells: Sequence[Cell], unit: Units) -> str:
     """
     at, rows = _rows(cells), []
     for key in dict.fromkeys(at[c] for c in sorted(cells, key=lambda c: (c.full is None, c.full or 0.0))):
-        here = sorted((c for c in cells if at[c] == key), key=lambda c: c.reference != c.full)
-        mode, core = here[0].name, here[0].full
-        own = f"{core * unit.frequencies:.7g}" if core else _plain_value(here[0])
+        row_cells = sorted((c for c in cells if at[c] == key), key=lambda c: c.reference != c.full)
+        mode, core = row_cells[0].name, row_cells[0].full
+        own = f"{core * unit.frequencies:.7g}" if core else _plain_value(row_cells[0])
         row = {"mode": plain(mode), f"Southwell, {unit.frequency}": own}
         for name in columns(cells):
-            cell = next((c for c in here if column(c) == name), None)
-            other = f"<br>{plain(cell.name)}" if cell and cell.name != mode else ""
-            row[plain(name)] = f"{_entry(cell, unit)}{other}" if cell else ""
+            cell = next((c for c in row_cells if column(c) == name), None)
+            other_name = f"<br>{plain(cell.name)}" if cell and cell.name != mode else ""
+            row[plain(name)] = f"{_entry(cell, unit)}{other_name}" if cell else ""
         rows.append(row)
     return table(rows)
 
@@ -71,11 +73,11 @@ def _plain_value(cell: Cell) -> str:
 def _rows(cells: Sequence[Cell]) -> dict[Cell, tuple[float | str, int]]:
     """The row of each cell: core's frequency with all effects, and the place among the column's cells with that frequency."""
     rows: dict[Cell, tuple[float | str, int]] = {}
-    seen: Counter[tuple[str, float | str]] = Counter()
+    counts: Counter[tuple[str, float | str]] = Counter()
     for c in sorted(cells, key=lambda c: c.mode):
         key = c.name if c.full is None else c.full
-        rows[c] = (key, seen[column(c), key])
-        seen[column(c), key] += 1
+        rows[c] = (key, counts[column(c), key])
+        counts[column(c), key] += 1
     return rows
 
 

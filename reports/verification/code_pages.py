@@ -50,15 +50,15 @@ def index(run: Run, codes: Sequence[Description]) -> str:
     rows = []
     for code in codes:
         cells = own(run, code.name)
-        far = summary.worst(cells)
+        worst = summary.worst(cells)
         rows.append(
             {
                 "code": f"[{plain(code.title)}]({code.name}.md)",
                 "version": plain(version(run, code)),
                 "shares with Southwell": code.shares,
                 "cells": plain(", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n)),
-                "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)} ({plain(far.case)})"
-                if far
+                "worst difference": f"{SYMBOL[worst.verdict]} {summary.plus_minus(worst)} ({plain(worst.case)})"
+                if worst
                 else "",
             }
         )
@@ -109,16 +109,16 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
     """One row per blade: cells by verdict, the largest difference, where it is and why; empty without cells."""
     rows = []
     for case in dict.fromkeys(c.case for c in cells):
-        here = [c for c in cells if c.case == case]
-        far = summary.worst(here)
-        where = f"{far.name}, {summary.units(run, case).at(far.omega)}" if far else ""
-        reason = far.reason if far else "; ".join(dict.fromkeys(c.reason for c in here))
-        counted = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(here).items() if n)
+        case_cells = [c for c in cells if c.case == case]
+        worst = summary.worst(case_cells)
+        where = f"{worst.name}, {summary.units(run, case).at(worst.omega)}" if worst else ""
+        reason = worst.reason if worst else "; ".join(dict.fromkeys(c.reason for c in case_cells))
+        tally = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(case_cells).items() if n)
         rows.append(
             {
                 "blade": plain(case),
-                "cells": plain(counted),
-                "worst difference": f"{SYMBOL[far.verdict]} {summary.plus_minus(far)}" if far else "",
+                "cells": plain(tally),
+                "worst difference": f"{SYMBOL[worst.verdict]} {summary.plus_minus(worst)}" if worst else "",
                 "where": plain(where),
                 "why": plain(reason),
             }

@@ -9,18 +9,18 @@ SHOWN = 1
 
 def headline(run: Run) -> str:
     """One sentence on how many faults are detected and which are missed; empty without controls."""
-    tried = [c for c in run.controls if not c.needs]
-    missed = ", ".join(c.control for c in tried if c.missed)
-    if not tried:
+    completed = [c for c in run.controls if not c.needs]
+    undetected = ", ".join(c.control for c in completed if c.missed)
+    if not completed:
         return ""
-    if missed:
-        return f"**Negative controls not detected: {missed}.**"
-    skipped = len(run.controls) - len(tried)
-    silent = sum(bool(c.without_effect) for c in tried)
-    rest = f"; {skipped} were not run, because a code is missing" if skipped else ""
-    count = len(tried) - silent
-    rest += f"; {silent} have no effect here" if silent else ""
-    return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{rest}."
+    if undetected:
+        return f"**Negative controls not detected: {undetected}.**"
+    skipped = len(run.controls) - len(completed)
+    silent = sum(bool(c.without_effect) for c in completed)
+    exceptions = f"; {skipped} were not run, because a code is missing" if skipped else ""
+    count = len(completed) - silent
+    exceptions += f"; {silent} have no effect here" if silent else ""
+    return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{exceptions}."
 
 
 def said(control: Control) -> str:
@@ -49,5 +49,5 @@ def overview(run: Run) -> list[dict[str, str]]:
 
 
 def _named(detected_by: tuple[str, ...]) -> str:
-    more = f"; and {len(detected_by) - SHOWN} more" if len(detected_by) > SHOWN else ""
-    return "; ".join(detected_by[:SHOWN]) + more
+    remainder = f"; and {len(detected_by) - SHOWN} more" if len(detected_by) > SHOWN else ""
+    return "; ".join(detected_by[:SHOWN]) + remainder

@@ -42,9 +42,9 @@ def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
     modes = list(dict.fromkeys(c.name for c in at_omega if c.mode <= PANELS))[:PANELS]
     across = min(3, len(modes))
     down = -(-len(modes) // across)
-    drawn = dict.fromkeys(column(cells[v.omega, v.mode, v.code]) for v in levels)
+    column_names = dict.fromkeys(column(cells[v.omega, v.mode, v.code]) for v in levels)
     with plot_style():
-        low = band(len(drawn))
+        low = band(len(column_names))
         height = low + 0.62 + 2.05 * down
         figure = Figure((WIDTH, height))
         grid = figure.subplots(down, across, sharex=True, sharey=True, squeeze=False)
@@ -64,7 +64,7 @@ def convergence(run: Run, case: str, units: Units, among: Sequence[str] = ()) ->
             ha="center",
         )
         figure.text(0.012, 0.55, "|difference|, relative", rotation=90, va="center")
-        key(figure, [_line(style[name], label=name) for name in drawn], 0.095)
+        key(figure, [_line(style[name], label=name) for name in column_names], 0.095)
     return figure
 
 
@@ -86,11 +86,11 @@ def _frame(axes: Axes, levels: Sequence[Level], cells: dict[tuple[float, int, st
     decades(axes.yaxis, 8)
 
 
-def ticks(least: int, most: int) -> list[int]:
-    """Round numbers from ``least`` to ``most``: as few to a decade as give three of them."""
+def ticks(minimum: int, maximum: int) -> list[int]:
+    """Round numbers from ``minimum`` to ``maximum``: as few to a decade as give three of them."""
     round_numbers: list[int] = []
     for digits in ((1, 3), (1, 2, 5), (1, 2, 3, 4, 5, 6, 8)):
-        round_numbers = [d * 10**k for k in range(len(str(most))) for d in digits if least <= d * 10**k <= most]
+        round_numbers = [d * 10**k for k in range(len(str(maximum))) for d in digits if minimum <= d * 10**k <= maximum]
         if len(round_numbers) >= 3:
             break
     return round_numbers

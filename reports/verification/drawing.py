@@ -22,5 +22,5 @@ FIGURES: dict[str, Draw] = {
 
 def of_case(run: Run, case: str, units: Units, among: Sequence[str]) -> dict[str, str]:
     """The figures of one case, by kind."""
-    drawn = {kind: draw(run, case, units, among) for kind, draw in FIGURES.items()}
-    return {kind: svg(figure) for kind, figure in drawn.items() if figure}
+    figures = {kind: draw(run, case, units, among) for kind, draw in FIGURES.items()}
+    return {kind: svg(figure) for kind, figure in figures.items() if figure}

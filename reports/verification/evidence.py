@@ -51,21 +51,21 @@ def verdict(run: Run) -> str:
     """
     counts = summary.counts(run.cells)
     missing = sum(_mute(c) for c in run.cells)
-    lacking = f"{missing} answer{' is' if missing == 1 else 's are'} missing" if missing else ""
-    wrong = counts["fail"] - missing
-    contradict = f"{wrong} {'answer contradicts' if wrong == 1 else 'answers contradict'} {OWN}" if wrong else ""
-    if contradictions := [*properties.contradictions(run), *([contradict] if wrong else [])]:
-        return f"No: {'; '.join([*contradictions, *([lacking] if lacking else [])])}."
+    missing_answers = f"{missing} answer{' is' if missing == 1 else 's are'} missing" if missing else ""
+    failed = counts["fail"] - missing
+    contradict = f"{failed} {'answer contradicts' if failed == 1 else 'answers contradict'} {OWN}" if failed else ""
+    if contradictions := [*properties.contradictions(run), *([contradict] if failed else [])]:
+        return f"No: {'; '.join([*contradictions, *([missing_answers] if missing_answers else [])])}."
     unsure = counts["inconclusive"]
-    missed = sum(control.missed for control in run.controls)
-    alone = _unconfirmed(run)
+    undetected = sum(control.missed for control in run.controls)
+    unconfirmed = _unconfirmed(run)
     reasons = (
         "the run was stopped before its end" if run.unfinished else "",
         "" if summary.compared(run.cells) else "nothing was compared",
-        lacking,
+        missing_answers,
         f"{unsure} answer{' is' if unsure == 1 else 's are'} inconclusive" if unsure else "",
-        f"{missed} seeded fault{' is' if missed == 1 else 's are'} not detected" if missed else "",
-        f"too few independent groups confirm {', '.join(alone)}" if alone else "",
+        f"{undetected} seeded fault{' is' if undetected == 1 else 's are'} not detected" if undetected else "",
+        f"too few independent groups confirm {', '.join(unconfirmed)}" if unconfirmed else "",
     )
     if any(reasons):
         return f"Open: {'; '.join(reason for reason in reasons if reason)}."
@@ -86,8 +86,8 @@ def _unconfirmed(run: Run) -> list[str]:
 
 def answer(run: Run) -> str:
     """The verdict and the number of cells by verdict."""
-    counted = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
-    return f"{verdict(run)} {len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {counted}."
+    tally = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
+    return f"{verdict(run)} {len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {tally}."
 
 
 def _mute(cell: Cell) -> bool:
@@ -97,8 +97,10 @@ def _mute(cell: Cell) -> bool:
 
 def urgent(run: Run) -> list[str]:
     """Lines on the worst failure, on failures without a number, and on the largest inconclusive difference."""
-    largest = {what: summary.largest(c for c in run.cells if c.verdict == v) for v, what in URGENT.items()}
-    sentences = [f"{what}: {summary.plus_minus(cell)} ({where(run, cell)})." for what, cell in largest.items() if cell]
+    largest = {heading: summary.largest(c for c in run.cells if c.verdict == v) for v, heading in URGENT.items()}
+    sentences = [
+        f"{heading}: {summary.plus_minus(cell)} ({where(run, cell)})." for heading, cell in largest.items() if cell
+    ]
     mute = {(c.code, c.case): c.reason.rstrip(".") for c in run.cells if _mute(c)}
     return [*sentences, *(f"Failed without a frequency: {code} ({case}): {why}." for (code, case), why in mute.items())]
 
@@ -109,14 +111,14 @@ def first(run: Run) -> list[str]:
     If there are none, the second line is the independent answer that is farthest from core relative to its target.
     """
     independent = {(case, w.name) for case in summary.cases(run) for w in witnesses(run, case) if w.kind in INDEPENDENT}
-    far = farthest(c for c in run.cells if (c.case, c.code) in independent)
+    worst = farthest(c for c in run.cells if (c.case, c.code) in independent)
     data = [line for line in (beyond_uncertainty(run), measured(run)) if line]
-    if not far or any(c.verdict in summary.BAD for c in run.cells):
+    if not worst or any(c.verdict in summary.BAD for c in run.cells):
         return [answer(run), *properties.lines(run), *urgent(run), *data]
     return [
         answer(run),
         *properties.lines(run),
-        f"Worst independent answer, relative to its target: {_shown(run, far)}.",
+        f"Worst independent answer, relative to its target: {_shown(run, worst)}.",
         *data,
     ]
 
@@ -127,10 +129,10 @@ def beyond_uncertainty(run: Run) -> str:
     for cell in run.cells:
         size, uncertain = abs(cell.difference or 0.0), cell.uncertainty
         if cell.verdict == "pass" and cell.role == "code" and uncertain is not None:
-            shown = max(
+            largest_shown = max(
                 abs(largest[cell.code].difference or 0.0) if cell.code in largest else VISIBLE, CERTAIN * uncertain
             )
-            if size > shown:
+            if size > largest_shown:
                 largest[cell.code] = cell
     listed = "; ".join(f"{summary.plus_minus(cell)} ({where(run, cell)})" for cell in largest.values())
     return (
@@ -145,13 +147,13 @@ def measured(run: Run) -> str:
     cells = [c for c in run.cells if c.verdict == "measured"]
     if not cells:
         return ""
-    seen = [c for c in cells if visible(c)]
-    most = max(seen, key=visible, default=None)
-    visibly = f"model error visible in {len(seen)}"
-    if most:
-        visibly += f", at least {least(visible(most))} ({where(run, most)})"
-    n = len(cells)
-    return f"Measured: {n} {'frequency' if n == 1 else 'frequencies'}, no evidence: {visibly}; not visible in {n - len(seen)}."
+    visible_cells = [c for c in cells if visible(c)]
+    clearest = max(visible_cells, key=visible, default=None)
+    visibly = f"model error visible in {len(visible_cells)}"
+    if clearest:
+        visibly += f", at least {least(visible(clearest))} ({where(run, clearest)})"
+    n, not_visible = len(cells), len(cells) - len(visible_cells)
+    return f"Measured: {n} {'frequency' if n == 1 else 'frequencies'}, no evidence: {visibly}; not visible in {not_visible}."
 
 
 def _statement(cell: Cell) -> str:
@@ -191,8 +193,8 @@ def farthest(cells: Iterable[Cell]) -> Cell | None:
     """The cell of the worst verdict in ``COMPARED`` whose difference is the largest relative to its target."""
     cells = list(cells)
     for verdict in COMPARED:
-        if judged := [c for c in cells if c.verdict == verdict]:
-            return max(judged, key=lambda c: abs(c.difference or 0.0) / c.target)
+        if matches := [c for c in cells if c.verdict == verdict]:
+            return max(matches, key=lambda c: abs(c.difference or 0.0) / c.target)
     return None
 
 
@@ -203,10 +205,10 @@ def _shown(run: Run, cell: Cell | None) -> str:
         units = summary.units(run, cell.case)
         return f"{SYMBOL[cell.verdict]} {cell.case}, {summary.column(cell)}, {units.at(cell.omega)}: no answer: {cell.reason}"
     cause = f"cause: {cell.reason.partition(';')[0]}"
-    more = f"target {summary.allowed(cell.target)}" if cell.verdict in COMPARED else cause
+    explanation = f"target {summary.allowed(cell.target)}" if cell.verdict in COMPARED else cause
     if cell.verdict == "measured":
-        more = _statement(cell)
-    return f"{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}: {where(run, cell)}; {more}"
+        explanation = _statement(cell)
+    return f"{SYMBOL[cell.verdict]} {summary.plus_minus(cell)}: {where(run, cell)}; {explanation}"
 
 
 def where(run: Run, cell: Cell) -> str:

@@ -50,9 +50,9 @@ def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Fi
     if len(speeds) < 2:
         return None
     answers = [c.value for c in (*cells, *data) if c.value is not None]
-    shown = columns([c for c in cells if c.value is not None])
+    column_names = columns([c for c in cells if c.value is not None])
     with plot_style():
-        low = band(len(shown) + 1 + len(columns(data)))
+        low = band(len(column_names) + 1 + len(columns(data)))
         height = 4.6 + low
         figure = Figure((WIDTH, height))
         axes = figure.add_axes((0.08, low / height, 0.78, 1 - (low + 0.68) / height))
@@ -70,7 +70,7 @@ def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Fi
             axes.plot(fine * units.speeds, curve, color=INK, lw=1.0, ls=style, zorder=3)
             ends.append((float(curve[-1]), name))
         style = looks(among or columns(run.cells))
-        handles = [*_markers(axes, style, cells, shown, units), *_data(axes, data, units)]
+        handles = [*_markers(axes, style, cells, column_names, units), *_data(axes, data, units)]
         label_ends(axes, ends)
         axes.set_xticks([omega * units.speeds for omega in speeds])
         axes.set_xlabel(units.speed_label)
@@ -122,18 +122,18 @@ def _rays(axes: Axes, units: Units) -> None:
 
 
 def _markers(
-    axes: Axes, style: Mapping[str, Look], cells: Sequence[Cell], shown: Sequence[str], units: Units
+    axes: Axes, style: Mapping[str, Look], cells: Sequence[Cell], column_names: Sequence[str], units: Units
 ) -> list[Line2D]:
     """Draw hollow nested markers, the first code's the largest, so that codes that agree remain visible."""
     handles = [Line2D([], [], color=INK, lw=1.0, label="Southwell, converged")]
-    for rank, name in enumerate(shown):
+    for rank, name in enumerate(column_names):
         own = [c for c in cells if column(c) == name and c.value is not None]
         handles += axes.plot(
             [c.omega * units.speeds for c in own],
             [(c.value or 0.0) * units.frequencies for c in own],
             ls="",
             marker=style[name].marker,
-            ms=10.0 - 7.0 * rank / max(len(shown) - 1, 1),
+            ms=10.0 - 7.0 * rank / max(len(column_names) - 1, 1),
             mfc="none",
             mec=style[name].colour,
             mew=1.1,

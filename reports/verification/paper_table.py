@@ -12,8 +12,8 @@ def line(run: Run) -> str:
     printed digit.
     """
     solved = {(c.omega, c.name): c.value for c in run.cells if c.case == CASE and c.role == "discretisation"}
-    printed = [c for c in run.cells if (c.case, c.code) == (CASE, TABLE) and c.value]
-    pairs = [(c, solved.get((c.omega, c.name))) for c in printed]
+    table_cells = [c for c in run.cells if (c.case, c.code) == (CASE, TABLE) and c.value]
+    pairs = [(c, solved.get((c.omega, c.name))) for c in table_cells]
     if not pairs:
         return ""
     reproduced = sum(

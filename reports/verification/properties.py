@@ -23,9 +23,9 @@ def contradictions(run: Run) -> list[str]:
     models = _codes(c for c in run.property_checks if c.quantity == "fingerprint" and c.verdict == "fail")
     if models:
         out.append(f"the model of {', '.join(map(_solver, models))} differs from the stations of the blade")
-    changed = [c for c in run.property_checks if c.quantity == "invariance" and c.verdict == "fail"]
-    if changed:
-        n = len(changed)
+    variant_failures = [c for c in run.property_checks if c.quantity == "invariance" and c.verdict == "fail"]
+    if variant_failures:
+        n = len(variant_failures)
         out.append(f"frequencies change in {n} other description{'s' * (n != 1)} of the same blade")
     return out
 
@@ -48,8 +48,8 @@ def lines(run: Run) -> list[str]:
         elif checks[0].verdict == "not run":
             out.append(f"Second reading: none: {checks[0].reason} ({case}).")
     for reader, blades in agreeing.items():
-        what = blades[0] if len(blades) == 1 else f"properties of each of {len(blades)} blades"
-        out.append(f"Second reading: {reader} reads the same {what}.")
+        scope = blades[0] if len(blades) == 1 else f"properties of each of {len(blades)} blades"
+        out.append(f"Second reading: {reader} reads the same {scope}.")
     return out + _unchanged(run)
 
 
@@ -120,7 +120,7 @@ def models(run: Run, case: str) -> list[dict[str, str]]:
     for code in _codes(fingerprints):
         checks = [c for c in fingerprints if c.code == code]
         by = {c.part: c for c in checks}
-        moments, bends = ([c for c in checks if c.part.startswith(what)] for what in ("first moment", "tip flex"))
+        moments, bends = ([c for c in checks if c.part.startswith(kind)] for kind in ("first moment", "tip flex"))
         verdict: Verdict = min(
             (c.verdict for c in checks), key=lambda v: STATED.index(v) if v in STATED else len(STATED)
         )

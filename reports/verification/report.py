@@ -38,18 +38,18 @@ def write(run: Run, folder: Path, executor: Executor | None = None) -> Path:
     """
     figures = folder / "figures"
     figures.mkdir(parents=True, exist_ok=True)
-    drawn: dict[str, list[str]] = {}
+    figure_paths: dict[str, list[str]] = {}
     among = columns(run.cells)
     cases = summary.cases(run)
     drawing = remembering(executor if executor and len(cases) > FEW else Serial())
-    asked = {case: drawing.submit(_figures, part(run, case), case, summary.units(run, case), among) for case in cases}
-    for case, images in asked.items():
+    futures = {case: drawing.submit(_figures, part(run, case), case, summary.units(run, case), among) for case in cases}
+    for case, images in futures.items():
         for kind, image in images.result().items():
             name = f"{file_name(case)}-{kind}.svg"
             atomic.write(figures / name, image)
-            drawn.setdefault(case, []).append(f"figures/{name}")
+            figure_paths.setdefault(case, []).append(f"figures/{name}")
     path = folder / "report.md"
-    atomic.write(path, render(run, drawn, condensed=page.include_page(folder)))
+    atomic.write(path, render(run, figure_paths, condensed=page.include_page(folder)))
     return path
 
 
@@ -124,8 +124,8 @@ def marked(run: Run, lines: Sequence[str]) -> list[str]:
     out = []
     for line in lines:
         bold = next((b for b in (summary.incomplete(run), evidence.verdict(run)) if b and line.startswith(b)), "")
-        rest = line[len(bold) :]
-        out.append(f"**{plain(bold)}**{' ' * rest.startswith(' ')}{plain(rest)}" if bold else plain(line))
+        remainder = line[len(bold) :]
+        out.append(f"**{plain(bold)}**{' ' * remainder.startswith(' ')}{plain(remainder)}" if bold else plain(line))
     return out
 
 
@@ -159,14 +159,14 @@ def heat(run: Run, linked: bool = False) -> str:
     Codes without any answer have no column; ``unasked`` names them. With ``linked``, cases link to their sections.
     """
     silent = _silent(run)
-    shown = {n: cells for n, cells in _by_column(run.cells).items() if n not in silent}
+    columns = {n: cells for n, cells in _by_column(run.cells).items() if n not in silent}
     rows = []
     for case in summary.cases(run):
-        here = _by_column([c for c in run.cells if c.case == case])
+        case_columns = _by_column([c for c in run.cells if c.case == case])
         name = f"[{plain(case)}](#{anchor(case)})" if linked else plain(case)
-        rows.append({"case": name} | {plain(n): _heat(here.get(n, [])) for n in shown})
+        rows.append({"case": name} | {plain(n): _heat(case_columns.get(n, [])) for n in columns})
     if any(c.shares for c in run.cells):
-        shares = {plain(n): plain(witnesses.shared(cells)) for n, cells in shown.items()}
+        shares = {plain(n): plain(witnesses.shared(cells)) for n, cells in columns.items()}
         rows.append({"case": "*shares with Southwell*"} | shares)
     return table(rows)
 
@@ -176,8 +176,8 @@ def _heat(cells: Sequence[Cell]) -> str:
         return ""
     verdict, worst = summary.worst_verdict(cells), summary.worst(cells)
     size = summary.size(worst) if worst else None
-    shown = f"<br>{amount(size, worst.target)}{summary.wide(worst)}" if worst and size is not None else ""
-    return f"{SYMBOL[verdict]} {SHORT.get(verdict, verdict)}{shown}"
+    difference = f"<br>{amount(size, worst.target)}{summary.wide(worst)}" if worst and size is not None else ""
+    return f"{SYMBOL[verdict]} {SHORT.get(verdict, verdict)}{difference}"
 
 
 @dataclass(frozen=True)
@@ -210,14 +210,14 @@ def section(run: Run, case: str, figures: list[str]) -> Section:
     cells = [c for c in run.cells if c.case == case]
     setting = summary.setting(run, case)
     unit = summary.units(run, case)
-    judged = [c for c in cells if c.role != "measured"] or cells
-    speeds = sorted({c.omega for c in judged if c.mode})
-    printed = [c.omega for c in cells if c.role == "table"]
-    focus = max([omega for omega in printed if omega in speeds] or speeds, default=None)
+    compared = [c for c in cells if c.role != "measured"] or cells
+    speeds = sorted({c.omega for c in compared if c.mode})
+    printed_speeds = [c.omega for c in cells if c.role == "table"]
+    focus = max([omega for omega in printed_speeds if omega in speeds] or speeds, default=None)
     tables = {
         omega: case_tables.comparison([c for c in cells if c.omega == omega and c.mode], unit) for omega in speeds
     }
-    reasons, split = case_tables.why(judged, unit), error_budget.rows(run, case)
+    reasons, split = case_tables.why(compared, unit), error_budget.rows(run, case)
     return Section(
         name=case,
         setting=setting,

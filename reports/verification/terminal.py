@@ -55,13 +55,13 @@ def matrix(run: Run, width: int) -> Iterator[Table]:
         out.add_column("case", no_wrap=True)
         for name in part:
             out.add_column(escape(heads[name]), overflow="fold", min_width=widths[name])
-        for case, shown in zip(summary.cases(run), cases, strict=True):
+        for case, label in zip(summary.cases(run), cases, strict=True):
             cells = [c for c in run.cells if c.case == case]
-            out.add_row(escape(shown), *[_field([c for c in cells if table_column(c) == name]) for name in part])
+            out.add_row(escape(label), *[_field([c for c in cells if table_column(c) == name]) for name in part])
         if any(c.shares for c in run.cells):
             out.add_section()
-            shown = [escape(shares[name]).replace(" ", "\n") for name in part]
-            out.add_row("shares with Southwell", *shown, style="dim")
+            texts = [escape(shares[name]).replace(" ", "\n") for name in part]
+            out.add_row("shares with Southwell", *texts, style="dim")
         yield out
 
 
@@ -138,9 +138,9 @@ def _frequencies(modes: Sequence[TrackedMode], title: str, units: Units, speeds:
         out.add_column(units.at(omega), justify="right", no_wrap=True)
     out.add_column(RELATIVE, justify="right", no_wrap=True)
     for mode in modes:
-        shown = {at.omega: at for at in mode.at if at.omega in speeds}
-        if shown:
-            fields = {o: certain(at.frequency * units.frequencies, at.uncertainty) for o, at in shown.items()}
-            largest = max(at.uncertainty for at in shown.values())
+        by_speed = {at.omega: at for at in mode.at if at.omega in speeds}
+        if by_speed:
+            fields = {o: certain(at.frequency * units.frequencies, at.uncertainty) for o, at in by_speed.items()}
+            largest = max(at.uncertainty for at in by_speed.values())
             out.add_row(mode.label, *[fields.get(omega, "") for omega in speeds], relative(largest))
     return out

@@ -20,21 +20,21 @@ def table(run: Run) -> list[dict[str, str]]:
         testimony = witnesses(run, case)
         agreeing = groups(testimony)
         setting = summary.setting(run, case)
-        counted = [w for group in agreeing for w in group]
-        rest = [w for w in testimony if w not in counted]
+        counted_witnesses = [w for group in agreeing for w in group]
+        others = [w for w in testimony if w not in counted_witnesses]
         rows.append(
             {
                 "case": case,
                 "independent groups": str(len(agreeing)),
                 "required": _required(setting.groups, setting.lacking) if setting else "",
                 "who agrees, group by group": "; ".join(f"({_names(group)})" for group in agreeing),
-                f"also within {unsigned(FINE)}": _names([w for w in counted if w.fine == "agrees"]),
+                f"also within {unsigned(FINE)}": _names([w for w in counted_witnesses if w.fine == "agrees"]),
                 "confirms the implementation only": _names(
-                    [w for w in rest if w.kind == "Southwell's model" and w.standing == "agrees"]
+                    [w for w in others if w.kind == "Southwell's model" and w.standing == "agrees"]
                 ),
                 "not counted": ", ".join(
                     f"{w.name} ({w.standing if w.standing != 'agrees' else w.kind}, to {unsigned(w.target)})"
-                    for w in rest
+                    for w in others
                     if w.standing != "agrees" or w.kind in ("undeclared", "coarse source")
                 ),
             }
@@ -42,13 +42,13 @@ def table(run: Run) -> list[dict[str, str]]:
     return rows if any(c.shares for c in run.cells) else []
 
 
-def _required(groups: int, lacking: str) -> str:
-    return f"{groups}: {lacking}" if lacking else str(groups)
+def _required(groups: int, reason: str) -> str:
+    return f"{groups}: {reason}" if reason else str(groups)
 
 
-def _names(named: Sequence[Witness]) -> str:
+def _names(group: Sequence[Witness]) -> str:
     """The names, with the target if it is wider than the paper's."""
-    return ", ".join(w.name + (f" (to {unsigned(w.target)})" if w.target > summary.PAPER else "") for w in named)
+    return ", ".join(w.name + (f" (to {unsigned(w.target)})" if w.target > summary.PAPER else "") for w in group)
 
 
 def origins(run: Run) -> list[dict[str, str]]:
@@ -68,18 +68,20 @@ def origins(run: Run) -> list[dict[str, str]]:
 
 def headline(run: Run) -> str:
     """The smallest number of independent groups that confirm a blade; empty without declared origins."""
-    counted = {
+    groups_of_case = {
         case: groups(witnesses(run, case))
         for case in summary.cases(run)
         if any(c.shares for c in run.cells if c.case == case)
     }
-    if not counted or not run.origins:
+    if not groups_of_case or not run.origins:
         return ""
-    least = min(counted, key=lambda case: len(counted[case]))
-    low, many = len(counted[least]), max(len(agreeing) for agreeing in counted.values())
-    who = "; ".join(engines(group) for group in counted[least])
-    span = f"{low} ({least}{f': {who}' if who else ''})" + (f" to {many}" if many > low else "")
-    own = [case for case, agreeing in counted.items() if agreeing and not any(map(foreign_theory, agreeing))]
+    fewest_case = min(groups_of_case, key=lambda case: len(groups_of_case[case]))
+    low, most = len(groups_of_case[fewest_case]), max(len(agreeing) for agreeing in groups_of_case.values())
+    fewest_engines = "; ".join(engines(group) for group in groups_of_case[fewest_case])
+    span = f"{low} ({fewest_case}{f': {fewest_engines}' if fewest_engines else ''})" + (
+        f" to {most}" if most > low else ""
+    )
+    own = [case for case, agreeing in groups_of_case.items() if agreeing and not any(map(foreign_theory, agreeing))]
     warning = (
         f" No foreign theory agrees for {', '.join(own)}: the codes solve models that Southwell's adapters define."
         if own

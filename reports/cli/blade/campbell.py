@@ -154,7 +154,7 @@ def command(
         raise UsageError("--verify: the other codes solve the blade without gravity and steady loads: leave those out")
     if pdf:
         as_pdf.require()
-    given = options.speeds(rpm, omega)
+    speed_option = options.speeds(rpm, omega)
     mount = (mounting or Mounting()).mount()
     if not blade_only and campbell_machine.is_turbine(blade):
         options.no_blade_options(
@@ -171,19 +171,21 @@ def command(
             speeds=(),
             modes=2 * modes,
             per_rev=options.per_rev(per_rev),
-            operating=options.operating(operating, given[1], given[0]) if operating and given else None,
+            operating=options.operating(operating, speed_option[1], speed_option[0])
+            if operating and speed_option
+            else None,
             margin=required_margin(margin, "--margin"),
         )
-        return int(not campbell_machine.run(blade, given, turbine, mount, out, html) and strict)
+        return int(not campbell_machine.run(blade, speed_option, turbine, mount, out, html) and strict)
     files = [measurements.user_results(text, measurements.defaults(data_uncertainty, None)) for text in add]
     measurements.check(files, data_uncertainty, None)
     subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])
-    other = single(against, mount) if against else None
-    kept = True
+    baseline = single(against, mount) if against else None
+    margins_kept = True
     for subject in subjects:
-        if not (given or subject.speeds):
+        if not (speed_option or subject.speeds):
             raise CaseError(f"--rpm: missing: {blade} does not define rotor speeds: give them, as in 0:15:0.5")
-        speeds, units = given or (subject.speeds, subject.units)
+        speeds, units = speed_option or (subject.speeds, subject.units)
         request = CampbellRequest(
             speeds=tuple(speeds),
             modes=modes,
@@ -203,29 +205,29 @@ def command(
         if verify:
             confirmed = confirmed_by(diagram, subject, units)
             extra.append(confirmation_table.sheet(diagram, confirmed, units))
-        if other:
-            changes_of_modes = blade_changes(subject.blade, other.blade, speeds, modes, elements)
-            extra.append(changes_table.sheet(changes_of_modes, other.blade.name, units))
-        about = (*options.blade_alone(blade), *options.loads(azimuth, tilt, load))
-        for text in about:
+        if baseline:
+            changes_of_modes = blade_changes(subject.blade, baseline.blade, speeds, modes, elements)
+            extra.append(changes_table.sheet(changes_of_modes, baseline.blade.name, units))
+        facts = (*options.blade_alone(blade), *options.loads(azimuth, tilt, load))
+        for text in facts:
             output().print(text, style="bold", markup=False, soft_wrap=True)
         doubts = interpolation.warnings(subject.blade, modes)
         _show(diagram, units, subject, extra, doubts)
-        kept &= tables.margins_kept(diagram)
-        origin = InputOrigin((*about, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))
+        margins_kept &= tables.margins_kept(diagram)
+        origin = InputOrigin((*facts, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))
         with writable(f"--out {out}"):
-            written = page.write(diagram, folder, units, typed(), origin, extra, files)
+            paths = page.write(diagram, folder, units, typed(), origin, extra, files)
             if html:
-                written = (*written, as_html.write(written[0]))
+                paths = (*paths, as_html.write(paths[0]))
                 if interactive.installed():
                     codes = {c.track: ", ".join(c.codes) or "none" for c in confirmed}
-                    shown = page.shapes_at(diagram)
-                    written = (*written, interactive.write(diagram, folder, units, shown, codes))
+                    speed_index = page.shapes_at(diagram)
+                    paths = (*paths, interactive.write(diagram, folder, units, speed_index, codes))
             if pdf:
-                written = (*written, as_pdf.write(written[0]))
-        names = ", ".join(path.name for path in written)
+                paths = (*paths, as_pdf.write(paths[0]))
+        names = ", ".join(path.name for path in paths)
         output().print(f"{folder}: {names}", markup=False, soft_wrap=True)
-    return int(strict and not kept)
+    return int(strict and not margins_kept)
 
 
 def confirmed_by(diagram: Campbell, subject: Subject, units: Units) -> tuple[Confirmed, ...]:
@@ -265,12 +267,12 @@ def solve(blade: Blade, request: CampbellRequest, units: Units, workers: int = 1
     progress = SpeedProgress(blade.name, request.speeds, units)
     with ExitStack() as stack:
         stack.enter_context(progress)
-        here = solver(blade, request, progress, units.at)
+        local_solver = solver(blade, request, progress, units.at)
         if workers == 1:
-            return campbell(blade, request, here)
+            return campbell(blade, request, local_solver)
         pool = Processes(min(workers, len(request.speeds)))
         stack.callback(pool.stop)
-        return campbell(blade, request, _shared(blade, request, pool, here, progress, units))
+        return campbell(blade, request, _shared(blade, request, pool, local_solver, progress, units))
 
 
 class SpeedProgress(Display):
@@ -292,17 +294,22 @@ class SpeedProgress(Display):
 
 
 def _shared(
-    blade: Blade, request: CampbellRequest, executor: Executor, here: Solver, progress: SpeedProgress, units: Units
+    blade: Blade,
+    request: CampbellRequest,
+    executor: Executor,
+    local_solver: Solver,
+    progress: SpeedProgress,
+    units: Units,
 ) -> Solver:
-    """A solver: ``executor`` starts on the requested speeds at once; ``here`` solves other speeds on demand."""
-    ahead = {omega: executor.submit(_one, blade, request, omega, units) for omega in request.speeds}
+    """A solver: ``executor`` starts on the requested speeds at once; ``local_solver`` solves other speeds on demand."""
+    futures = {omega: executor.submit(_one, blade, request, omega, units) for omega in request.speeds}
 
     def answer(omega: float) -> Modes:
-        if omega not in ahead:
-            return here(omega)
-        solved = ahead[omega].result()
+        if omega not in futures:
+            return local_solver(omega)
+        modes = futures[omega].result()
         progress(omega)
-        return solved
+        return modes
 
     return answer
 

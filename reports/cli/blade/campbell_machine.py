@@ -38,7 +38,7 @@ def is_turbine(name: str) -> bool:
 
 def run(
     name: str,
-    given: tuple[tuple[float, ...], Units] | None,
+    speed_option: tuple[tuple[float, ...], Units] | None,
     request: MachineRequest,
     mount: Mount,
     out: Path,
@@ -48,7 +48,7 @@ def run(
 
     Args:
         name: the primary file, or a TOML file.
-        given: speeds (rad/s) and their unit; by default from rest to ``BEYOND`` times the deck's rotor speed.
+        speed_option: speeds (rad/s) and their unit; by default from rest to ``BEYOND`` times the deck's rotor speed.
         request: the settings; its speeds are ignored.
         mount: overrides of the blade's mounting.
         out: output folder.
@@ -58,36 +58,36 @@ def run(
         CaseError: the deck cannot be read, or a speed has no steady state.
     """
     path = Path(name)
-    read = reader.read(path, mount)
-    if given is None:
-        if read.speed <= 0:
+    reading = reader.read(path, mount)
+    if speed_option is None:
+        if reading.speed <= 0:
             raise CaseError(f"--rpm: missing: {name} has no rotor speed: give speeds, as in 0:15:0.5")
-        top = np.ceil(BEYOND * read.speed * RPM.speeds)
-        count, lowest = SPEEDS_OF_TWO_BLADES if read.turbine.blades == 2 else (SPEEDS, 0.0)
-        first = lowest * read.speed * RPM.speeds
-        given = tuple((np.linspace(first, top, count) / RPM.speeds).tolist()), RPM
-    speeds, units = given
+        top = np.ceil(BEYOND * reading.speed * RPM.speeds)
+        count, lowest = SPEEDS_OF_TWO_BLADES if reading.turbine.blades == 2 else (SPEEDS, 0.0)
+        first = lowest * reading.speed * RPM.speeds
+        speed_option = tuple((np.linspace(first, top, count) / RPM.speeds).tolist()), RPM
+    speeds, units = speed_option
     settings = MachineRequest(speeds, request.modes, request.per_rev, request.operating, request.margin)
-    diagram = machine_diagram(read.turbine, settings, at=units.at)
-    ground = "on rigid ground" if read.turbine.support.rigid else "on springs"
-    about = (
-        f"{path.name}: the whole turbine {ground}: tower, nacelle, drivetrain, hub and {read.turbine.blades} blades",
-        *read.source.about,
+    diagram = machine_diagram(reading.turbine, settings, at=units.at)
+    ground = "on rigid ground" if reading.turbine.support.rigid else "on springs"
+    facts = (
+        f"{path.name}: the whole turbine {ground}: tower, nacelle, drivetrain, hub and {reading.turbine.blades} blades",
+        *reading.source.about,
     )
     console = output()
-    console.print(about[0], style="bold", markup=False, soft_wrap=True)
+    console.print(facts[0], style="bold", markup=False, soft_wrap=True)
     for sheet in pages.sheets(diagram, units):
         console.print(tables.terminal(sheet, console.width))
         console.print()
-    for line in about[1:]:
+    for line in facts[1:]:
         console.print(line, style="dim", markup=False)
-    not_used.show(read.source.unused, console)
-    origin = InputOrigin(about, read.source.files, not_used.lines(read.source.unused))
+    not_used.show(reading.source.unused, console)
+    origin = InputOrigin(facts, reading.source.files, not_used.lines(reading.source.unused))
     with writable(f"--out {out}"):
-        written = pages.write(diagram, out, units, typed(), origin, about[:1])
+        paths = pages.write(diagram, out, units, typed(), origin, facts[:1])
         if html:
-            written = (*written, as_html.write(written[0]))
+            paths = (*paths, as_html.write(paths[0]))
             if interactive.installed():
-                written = (*written, moving_machine.write(diagram, out, units))
-    console.print(f"{out}: {', '.join(p.name for p in written)}", markup=False, soft_wrap=True)
+                paths = (*paths, moving_machine.write(diagram, out, units))
+    console.print(f"{out}: {', '.join(p.name for p in paths)}", markup=False, soft_wrap=True)
     return diagram.kept

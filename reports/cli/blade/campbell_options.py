@@ -20,18 +20,18 @@ TURBINES = (".fst", ".htc")
 
 def speeds(rpm: str | None, omega: str | None) -> tuple[tuple[float, ...], Units] | None:
     """Rotor speeds (rad/s) and their unit; None if neither option is given."""
-    asked = request.speeds(rpm, omega)
-    return asked and (asked[0], RPM if asked[1] else RAD_S)
+    requested = request.speeds(rpm, omega)
+    return requested and (requested[0], RPM if requested[1] else RAD_S)
 
 
 def gravity(azimuth: float | None, tilt: float) -> tuple[float, float, float]:
     """Gravity in the hub's axes, m/s², at an azimuth and tilt in degrees; zero without an azimuth."""
     if azimuth is None and tilt:
         raise CaseError(f"--tilt {tilt:g}: no effect without --azimuth, since it tilts gravity: add --azimuth 0")
-    at, up = angle("--azimuth", azimuth), angle("--tilt", tilt)
+    at, tilt_angle = angle("--azimuth", azimuth), angle("--tilt", tilt)
     if at is None:
         return 0.0, 0.0, 0.0
-    x, y, z = prestress.gravity(at, up or 0.0).tolist()
+    x, y, z = prestress.gravity(at, tilt_angle or 0.0).tolist()
     return x, y, z
 
 

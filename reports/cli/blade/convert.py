@@ -65,47 +65,47 @@ def command(
     """
     if not 0.0 <= rpm < 1e6:
         raise CaseError(f"--rpm {rpm:g}: not a rotor speed: give 0 or more revolutions per minute, as in 12.1")
-    chosen = to or ("toml" if out.suffix.lower() == ".toml" else None)
-    if chosen is None:
+    format = to or ("toml" if out.suffix.lower() == ".toml" else None)
+    if format is None:
         raise CaseError(
             f"{out}: ends in {out.suffix or 'nothing'}: give the format with --to toml, beamdyn or elastodyn"
         )
     if os.path.lexists(out):
         raise CaseError(f"{out}: exists already: give another name, or remove it")
-    subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=chosen != "beamdyn")
+    subjects = find_subjects(blade, (mounting or Mounting()).mount(), rotating=format != "beamdyn")
     if len(subjects) > 1:
         names = ", ".join(s.blade.name for s in subjects)
         raise CaseError(f"{blade}: {len(subjects)} blades ({names}): name one of them")
     console = output()
     with writable(str(out), "name"):
-        written, mount = _write(subjects[0], out, chosen, rpm / RPM.speeds)
-    console.print(", ".join(str(path) for path in written), markup=False, soft_wrap=True)
+        paths, mount = _write(subjects[0], out, format, rpm / RPM.speeds)
+    console.print(", ".join(str(path) for path in paths), markup=False, soft_wrap=True)
     if mount is not None:
         console.print(escape(_main_file(mount)), soft_wrap=True)
-    not_used.show((u for u in subjects[0].unused if u.name not in CARRIED[chosen]), console)
-    if chosen == "beamdyn" and (moved := beamdyn.spline_error(subjects[0].blade)) > KEPT:
-        message = f"the curve between stations changes: BeamDyn's spline moves stations by {moved:.2g} of the length"
+    not_used.show((u for u in subjects[0].unused if u.name not in CARRIED[format]), console)
+    if format == "beamdyn" and (change := beamdyn.spline_error(subjects[0].blade)) > KEPT:
+        message = f"the curve between stations changes: BeamDyn's spline moves stations by {change:.2g} of the length"
         console.print(f"{message}: give more stations where it bends", style="yellow", markup=False, soft_wrap=True)
-    for name in _unknown(subjects[0].unused, chosen):
+    for name in _unknown(subjects[0].unused, format):
         console.print(f"not given or zero, written as 0: {name}", style="yellow", markup=False, soft_wrap=True)
     return 0
 
 
 def _write(subject: Subject, out: Path, to: Format, omega: float) -> tuple[list[Path], Mount | None]:
     """Write the files; return their paths and the mount that a main file must define."""
-    blade, given = subject.blade, subject.unused
+    blade, unused = subject.blade, subject.unused
     if to == "toml":
         southwell_toml.write(blade, out)
         return [out], None
     if to == "beamdyn":
-        mount = beamdyn.write(blade, out, given)
+        mount = beamdyn.write(blade, out, unused)
         return [out, beamdyn.blade_file(out)], mount
-    return [out], elastodyn.write(blade, out, omega, given)
+    return [out], elastodyn.write(blade, out, omega, unused)
 
 
-def _unknown(given: Sequence[Unused], to: Format) -> list[str]:
+def _unknown(unused: Sequence[Unused], to: Format) -> list[str]:
     """List the quantities that the format has and the blade's files do not define."""
-    return [name for name in CARRIED[to] if name not in {u.name for u in given}]
+    return [name for name in CARRIED[to] if name not in {u.name for u in unused}]
 
 
 def _main_file(mount: Mount) -> str:
@@ -113,10 +113,10 @@ def _main_file(mount: Mount) -> str:
     values = {"HubRad": mount.hub_radius or 0.0, "PreCone(1)": float(np.degrees(mount.precone or 0.0))}
     if mount.length is not None:
         values = {"TipRad": mount.length + values["HubRad"], **values}
-    said = "ElastoDyn's main file must say " + ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
+    message = "ElastoDyn's main file must say " + ", ".join(f"{name} = {value:.10g}" for name, value in values.items())
     if mount.pitch:
-        theirs = 0.0 - float(np.degrees(mount.pitch))
-        said += (
-            f"; the pitch is in none of the files: BlPitch(1) = {theirs:.10g} in OpenFAST, --pitch {-theirs:.10g} here"
+        pitch = 0.0 - float(np.degrees(mount.pitch))
+        message += (
+            f"; the pitch is in none of the files: BlPitch(1) = {pitch:.10g} in OpenFAST, --pitch {-pitch:.10g} here"
         )
-    return said
+    return message

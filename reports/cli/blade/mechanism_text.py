@@ -21,19 +21,19 @@ def modes(solution: Solution, title: str) -> Table:
         out.add_column(head, justify="right")
     out.add_column("largest motion")
     for row in _rows(solution):
-        sure = np.inf if row["relative_uncertainty"] is None else row["relative_uncertainty"]
-        numbers = (certain(row["frequency_rad_s"], sure), certain(row["frequency_hz"], sure))
-        grows = row["damping_ratio"] < -max(1e-9, sure)
-        ratio = (_ratio(row["damping_ratio"], sure), relative(sure))
+        uncertainty = np.inf if row["relative_uncertainty"] is None else row["relative_uncertainty"]
+        numbers = (certain(row["frequency_rad_s"], uncertainty), certain(row["frequency_hz"], uncertainty))
+        grows = row["damping_ratio"] < -max(1e-9, uncertainty)
+        ratio = (_ratio(row["damping_ratio"], uncertainty), relative(uncertainty))
         out.add_row(str(row["mode"]), *numbers, *ratio, escape(row["led_by"]) + ("; grows" if grows else ""))
     return out
 
 
-def _ratio(damping: float, sure: float) -> str:
+def _ratio(damping: float, uncertainty: float) -> str:
     """The damping ratio with at most six decimals, none of them uncertain."""
-    if not sure < 0.5:
+    if not uncertainty < 0.5:
         return "?"
-    places = 6 if sure <= 1e-6 else int(-np.ceil(np.log10(sure)))
+    places = 6 if uncertainty <= 1e-6 else int(-np.ceil(np.log10(uncertainty)))
     return f"{round(damping, places) + 0.0:.{places}f}"
 
 
@@ -49,8 +49,8 @@ def state(solution: Solution) -> Table:
     out.add_column("")
     out.add_column("in vibration")
     for name, value in solution.steady.items():
-        shown = f"{value:.7g}" if abs(value) > ROUNDING else "0"
-        out.add_row(escape(name), shown, "rad" if name.endswith(ROTATIONS) else "m", _roles(solution)[name])
+        text = f"{value:.7g}" if abs(value) > ROUNDING else "0"
+        out.add_row(escape(name), text, "rad" if name.endswith(ROTATIONS) else "m", _roles(solution)[name])
     return out
 
 
@@ -63,14 +63,14 @@ def redundant(solution: Solution) -> str:
 
 def notes(solution: Solution) -> list[str]:
     """Explanation of the uncertainties, and a remark on a large steady strain."""
-    what = "± rounding: relative for frequencies, absolute for damping ratios; "
+    legend = "± rounding: relative for frequencies, absolute for damping ratios; "
     if not all(beam.beams.bushings.all() for beam in solution.linear.tree.mechanism.beams):
         out = [
-            what
+            legend
             + "each beam is one element: the error of this discretisation is not included; divide the beams to see it"
         ]
     else:
-        out = [what + "nothing is discretised, so there is no other numerical error"]
+        out = [legend + "nothing is discretised, so there is no other numerical error"]
     if solution.strain > LARGE_STRAIN:
         out.append(
             f"steady strain up to {solution.strain:.1%}: above {LARGE_STRAIN:.0%}, check that linear elastic sections describe "
@@ -98,10 +98,10 @@ def _rows(solution: Solution) -> list[dict[str, Any]]:
             "frequency_rad_s": abs(value),
             "frequency_hz": abs(value) / (2 * np.pi),
             "damping_ratio": float(damping),
-            "relative_uncertainty": float(sure) if np.isfinite(sure) else None,
+            "relative_uncertainty": float(uncertainty) if np.isfinite(uncertainty) else None,
             "led_by": led_by,
         }
-        for k, (value, damping, sure, led_by) in enumerate(
+        for k, (value, damping, uncertainty, led_by) in enumerate(
             zip(solution.values.tolist(), solution.damping, solution.uncertainty, solution.leading, strict=True), 1
         )
     ]

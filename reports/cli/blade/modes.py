@@ -9,7 +9,7 @@ from rich.console import Console
 from ....cases.campbell import interpolation
 from ....cases.campbell.changes import changes as blade_changes
 from ....cases.campbell.diagram import CampbellRequest
-from ....cases.campbell.sweep import Named
+from ....cases.campbell.sweep import NamedMode
 from ....cases.campbell.tracked import TrackedMode, tracked
 from ....cases.input import library
 from ....cases.input.changes import parse
@@ -92,23 +92,23 @@ def modes(
         return PASSED
     speeds, units = campbell_options.speeds(rpm, omega) or (None, None)
     rows: list[dict[str, object]] = []
-    mount, given = (mounting or Mounting()).mount(), [parse(text) for text in changes]
+    mount, property_changes = (mounting or Mounting()).mount(), [parse(text) for text in changes]
     if json and against:
         raise UsageError(
             f"--against {against}: with --json: the table of changes is not part of the JSON: leave one out"
         )
     rotating = speeds is None or any(speeds)
-    other = subjects.single(against, mount, rotating) if against else None
-    for subject in subjects.changed(subjects.subjects(case, mount, rotating), given):
+    baseline = subjects.single(against, mount, rotating) if against else None
+    for subject in subjects.changed(subjects.subjects(case, mount, rotating), property_changes):
         if speeds is None and not subject.speeds:
             raise UsageError(f"--rpm: missing: {case} does not define rotor speeds: give them, as in 0:15:5")
         blade = subject.blade
         at = subject.speeds if speeds is None else speeds
-        shown = units or subject.units
+        display_units = units or subject.units
         request = CampbellRequest(
             tuple(at), modes, elements=elements, accuracy=accuracy, allow_large_strain=allow_large_strain
         )
-        computed = tracked(blade, request, shown.at)
+        computed = tracked(blade, request, display_units.at)
         by_speed = sorted((row for mode in computed for row in mode.at), key=lambda row: (row.omega, row.mode))
         labels = {(row.omega, row.mode): mode.label for mode in computed for row in mode.at}
         rows += [_tidy(blade.name, row, labels[row.omega, row.mode]) for row in by_speed]
@@ -121,15 +121,20 @@ def modes(
         if not json:
             mesh = f"accuracy {accuracy:g}" if elements is None else f"{elements} elements"
             title = f"{blade.name}: {len(blade.stations)} stations, {mesh}"
-            for table in terminal.frequencies(computed, title, shown, console.width):
+            for table in terminal.frequencies(computed, title, display_units, console.width):
                 console.print(table)
             if subject.files:
                 console.print(NUMERICAL, style="dim", markup=False, soft_wrap=True)
-            for line in (*remarks(by_speed, accuracy if elements is None else None, shown), *_doubts(computed, shown)):
+            for line in (
+                *remarks(by_speed, accuracy if elements is None else None, display_units),
+                *_doubts(computed, display_units),
+            ):
                 console.print(line, markup=False, soft_wrap=True)
-            if other:
-                compared = blade_changes(blade, other.blade, at, modes, elements)
-                console.print(tables.terminal(changes_table.sheet(compared, other.blade.name, shown), console.width))
+            if baseline:
+                compared = blade_changes(blade, baseline.blade, at, modes, elements)
+                console.print(
+                    tables.terminal(changes_table.sheet(compared, baseline.blade.name, display_units), console.width)
+                )
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())
     return PASSED
@@ -161,14 +166,14 @@ def mechanism(
     json
         Print JSON. relative_uncertainty is the effect of rounding on a frequency (relative) and its damping ratio (absolute).
     """
-    described = library.mechanism(name)
-    solution = described.solve(modes, time, allow_large_strain)
+    description = library.mechanism(name)
+    solution = description.solve(modes, time, allow_large_strain)
     if json:
-        plain = msgspec.json.encode(answer.plain(described.text.name, solution))
+        plain = msgspec.json.encode(answer.plain(description.text.name, solution))
         print(msgspec.json.format(plain).decode())
         return PASSED
     console = output()
-    console.print(answer.modes(solution, described.text.title or described.text.name))
+    console.print(answer.modes(solution, description.text.title or description.text.name))
     console.print(answer.state(solution))
     console.print(answer.redundant(solution), markup=False, soft_wrap=True)
     for line in answer.notes(solution):
@@ -187,7 +192,7 @@ def _doubts(modes: Sequence[TrackedMode], units: Units) -> list[str]:
     ]
 
 
-def _tidy(case: str, row: Named, label: str) -> dict[str, object]:
+def _tidy(case: str, row: NamedMode, label: str) -> dict[str, object]:
     return {
         "case": case,
         "omega_rad_s": row.omega,

@@ -77,18 +77,18 @@ def command(
     for subject in subjects:
         console.print(summary(subject.blade, subject.about))
         not_used.show(subject.unused, console)
-        shown = units or subject.units
-        loads = list(_loads(subject.blade, speeds or subject.speeds, shown)) if steady else []
+        display_units = units or subject.units
+        loads = list(_loads(subject.blade, speeds or subject.speeds, display_units)) if steady else []
         for table in stations(subject.blade, None if all else ROWS):
             console.print(table)
         if loads:
-            for sheet in root_tables.sheets(loads, shown):
+            for sheet in root_tables.sheets(loads, display_units):
                 console.print(terminal(sheet, console.width))
         if out is not None:
             folder = out / file_name(subject.blade.name.partition("/")[2]) if len(subjects) > 1 else out
             with writable(f"--out {out}"):
-                written = write(subject.blade, folder, loads)
-            console.print(f"{folder}: {', '.join(path.name for path in written)}", markup=False, soft_wrap=True)
+                paths = write(subject.blade, folder, loads)
+            console.print(f"{folder}: {', '.join(path.name for path in paths)}", markup=False, soft_wrap=True)
     return 0
 
 
@@ -100,34 +100,34 @@ def _loads(blade: Blade, speeds: Sequence[float], units: Units) -> Iterator[Root
             raise unsteady(blade.name, omega, error, units.at) from error
 
 
-def summary(blade: Blade, about: Sequence[str] = ()) -> Group:
+def summary(blade: Blade, origin: Sequence[str] = ()) -> Group:
     """A table of facts, followed by how the blade was read."""
     table = Table(
         box=None, show_header=False, pad_edge=False, title=escape(blade.name), title_justify="left", title_style="bold"
     )
     table.add_column(style="dim")
     table.add_column(overflow="fold")
-    for name, text in (facts(blade) | {"from": "\n".join(about)}).items():
+    for name, text in (facts(blade) | {"from": "\n".join(origin)}).items():
         if text:
             table.add_row(name, escape(text))
     return Group(table)
 
 
-def stations(blade: Blade, most: int | None) -> list[Table]:
-    """The tables of properties and of centres, with at most ``most`` evenly spaced stations including both ends.
+def stations(blade: Blade, limit: int | None) -> list[Table]:
+    """The tables of properties and of centres, with at most ``limit`` evenly spaced stations including both ends.
 
     Centres that are all on the axis are one line under the table of properties.
     """
     values = rows(blade, sections(blade))
     n = len(values)
-    some = picked(n, most)
-    properties = _table(values[some], range(PROPERTIES))
-    centres = _table(values[some], (0, *range(PROPERTIES, len(COLUMNS))))
+    indices = picked(n, limit)
+    properties = _table(values[indices], range(PROPERTIES))
+    centres = _table(values[indices], (0, *range(PROPERTIES, len(COLUMNS))))
     on_axis = bool(np.all(np.abs(values[:, PROPERTIES:]) < ON_AXIS))
     tables = [properties] if on_axis else [properties, centres]
     captions = (
         on_axis and "All centres are on the axis, within 0.5 mm.",
-        len(some) < n and f"{len(some)} of {n} stations; --all shows all",
+        len(indices) < n and f"{len(indices)} of {n} stations; --all shows all",
     )
     tables[-1].caption = "\n".join(caption for caption in captions if caption) or None
     return tables
@@ -151,8 +151,8 @@ def write(blade: Blade, folder: Path, loads: Sequence[RootLoads] = ()) -> list[P
     sampled = sections(blade)
     angles = np.degrees([sampled.principal, sampled.mass_axes]).T
     values = np.column_stack([rows(blade, sampled), angles, blade.curve])
-    written = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
-    lines = [",".join(COLUMNS + MORE), *written]
+    table_rows = (",".join("" if np.isnan(x) else repr(float(x)) for x in row) for row in values)
+    lines = [",".join(COLUMNS + MORE), *table_rows]
     atomic.write(table, "\n".join(lines) + "\n")
     if not loads:
         return [*span.write(blade, folder), table]

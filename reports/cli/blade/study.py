@@ -67,23 +67,23 @@ def command(
     count = cluster_workers(workers, scheduler)
     if out.suffix == parquet.SUFFIX:
         parquet.library(out)  # before the first answer
-    asked, unused = read_study(study)
+    request, unused = read_study(study)
     not_used.show(unused, output())
-    head, path = header(asked), out.with_suffix(SUFFIX)
+    head, path = header(request), out.with_suffix(SUFFIX)
     with writable(f"--out {path}", "file"):
-        opened = StudyJournal(path, head)
-    with opened as journal:
-        stopped = _run(asked, journal, count, scheduler)
+        opened_journal = StudyJournal(path, head)
+    with opened_journal as journal:
+        stopped = _run(request, journal, count, scheduler)
         if stopped:
-            done = f"{sum(journal.done)} of {head.tasks} samples are in {path}"
-            print(f"southwell: {stopped[0]}: {done}; the same command continues", file=sys.stderr)
+            progress = f"{sum(journal.done)} of {head.tasks} samples are in {path}"
+            print(f"southwell: {stopped[0]}: {progress}; the same command continues", file=sys.stderr)
             return stopped[1]
         if out != path:
             parquet.write(out, path, head)
         result = outcome(read(path))
         if summary:
             console = output()
-            console.print(tables.terminal(_sheet(path, asked), console.width))
+            console.print(tables.terminal(_sheet(path, request), console.width))
     output().print(f"{out}: {_said(result, head)}", markup=False, soft_wrap=True)
     return FAILED if result.missing else PASSED
 
@@ -106,12 +106,12 @@ def _run(study: Study, journal: StudyJournal, workers: int | None, scheduler: st
 
 
 def _said(result: Outcome, head: Header) -> str:
-    said = f"{result.frequencies} frequencies of {head.tasks} samples at {len(head.speeds_rad_s)} speeds"
+    message = f"{result.frequencies} frequencies of {head.tasks} samples at {len(head.speeds_rad_s)} speeds"
     if result.missing:
-        said += f"; {result.missing} speeds of samples without one (first: {result.reason})"
+        message += f"; {result.missing} speeds of samples without one (first: {result.reason})"
     if result.internal:
-        said += f"; {result.internal} of these are internal errors: please report them"
-    return said
+        message += f"; {result.internal} of these are internal errors: please report them"
+    return message
 
 
 def _sheet(path: Path, study: Study) -> Sheet:
@@ -120,7 +120,7 @@ def _sheet(path: Path, study: Study) -> Sheet:
     rows = []
     for blade, omega, mode, name, samples, *numbers in spreads(read(path)).itertuples(index=False):
         mean, deviation, *limits = (value * units.frequencies for value in numbers)
-        spread = f"{deviation:.3g}" if deviation > ROUNDING * mean else "0"
+        deviation_text = f"{deviation:.3g}" if deviation > ROUNDING * mean else "0"
         rows.append(
             (
                 blade,
@@ -129,7 +129,7 @@ def _sheet(path: Path, study: Study) -> Sheet:
                 name,
                 str(samples),
                 f"{mean:.6g}",
-                spread,
+                deviation_text,
                 *(f"{f:.6g}" for f in limits),
             )
         )

@@ -50,14 +50,14 @@ class Subject:
     files: tuple[Path, ...] = ()
 
 
-def changed(chosen: Sequence[Subject], given: Sequence[PropertyChange]) -> list[Subject]:
+def changed(subjects: Sequence[Subject], property_changes: Sequence[PropertyChange]) -> list[Subject]:
     """The subjects with changed properties; ``about`` lists the changes.
 
     Raises:
         CaseError: if a blade does not allow a change.
     """
-    lines = tuple(f"changed: {change}" for change in given)
-    return [replace(s, blade=changes.apply(s.blade, given), about=(*s.about, *lines)) for s in chosen]
+    lines = tuple(f"changed: {change}" for change in property_changes)
+    return [replace(s, blade=changes.apply(s.blade, property_changes), about=(*s.about, *lines)) for s in subjects]
 
 
 def single(name: str, mount: Mount, rotating: bool = True) -> Subject:
@@ -92,8 +92,10 @@ def subjects(name: str, mount: Mount, rotating: bool = True) -> list[Subject]:
     out = []
     for variant, setting in zip(case.variants, settings(case), strict=True):
         facts = (f"{fact}: {value}" for fact, value in setting.facts.items() if fact in FACTS)
-        about = (setting.title, setting.description, f"source: {setting.source}", *facts)
+        about_lines = (setting.title, setting.description, f"source: {setting.source}", *facts)
         out.append(
-            Subject(variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about, unused=variant.unused)
+            Subject(
+                variant.blade, tuple(variant.speeds.tolist()), BY_KEY[setting.unit], about_lines, unused=variant.unused
+            )
         )
     return out

@@ -34,8 +34,8 @@ def run(name: str, modes: int, json: bool, **given: bool) -> None:
         CaseError: the file cannot be read, or the tower does not carry its weight.
         UsageError: an option applies to blades only.
     """
-    for option, used in given.items():
-        if used:
+    for option, is_given in given.items():
+        if is_given:
             raise UsageError(f"--{option.replace('_', '-')}: {name} is a tower, which does not rotate: leave it out")
     tower, source = towers.read(Path(name))
     try:

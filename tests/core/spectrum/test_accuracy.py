@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from southwell.cases.campbell.sweep import Named
+from southwell.cases.campbell.sweep import NamedMode
 from southwell.cases.input.library import load
 from southwell.cases.input.schema import Compare
 from southwell.cases.solve import core_solver
@@ -220,7 +220,7 @@ def test_digits_end_where_the_uncertainty_begins(value: float, uncertainty: floa
 
 
 def test_remarks() -> None:
-    row = Named(3.0, 1, "flapwise 1", 5.0, 1e-3, 0.05)
+    row = NamedMode(3.0, 1, "flapwise 1", 5.0, 1e-3, 0.05)
     strain, accuracy_ = remarks([row], 1e-6, RAD_S)
     assert strain.startswith("steady strain up to 5.0% at")
     assert accuracy_.startswith("accuracy 1e-06 not reached: flapwise 1 at")

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from rich.console import Console
 
-from southwell.cases.campbell.sweep import Named
+from southwell.cases.campbell.sweep import NamedMode
 from southwell.cases.campbell.tracked import TrackedMode
 from southwell.cases.input.blades import offset
 from southwell.cases.judge.results import Control
@@ -135,7 +135,7 @@ def test_wrong_options_are_one_line(arguments: str, phrase: str, capsys: pytest.
 def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
     """Every digit of every speed, in as many tables as that takes."""
     rows = [
-        Named(rpm / RPM.speeds, mode, f"edgewise {mode}", (10.0 * mode + rpm) / RPM.frequencies, 1e-9, 0.0)
+        NamedMode(rpm / RPM.speeds, mode, f"edgewise {mode}", (10.0 * mode + rpm) / RPM.frequencies, 1e-9, 0.0)
         for rpm in range(0, 3 * count, 3)
         for mode in (1, 2)
     ]
