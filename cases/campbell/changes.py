@@ -53,26 +53,34 @@ def changes(
         CaseError: if one of the blades has no stable steady state at a speed.
     """
     weight = weights(blade)
-    asked = CampbellRequest(tuple(speeds), modes=modes, elements=elements)
-    first, second = (solver(b, asked) for b in (blade, against))
+    request = CampbellRequest(tuple(speeds), modes=modes, elements=elements)
+    first, second = (solver(b, request) for b in (blade, against))
     return tuple(row for omega in speeds for row in _at(blade, first(omega), second(omega), modes, weight))
 
 
-def _at(blade: Blade, ours: Modes, other: Modes, modes: int, weight: np.ndarray) -> list[ModeDifference]:
-    ours, other = aligned(ours, weight), aligned(other, weight)
-    indices = range(min(modes, len(ours.frequencies)))
-    names = numbered(families(participation(ours, blade)))
+def _at(blade: Blade, first: Modes, second: Modes, modes: int, weight: np.ndarray) -> list[ModeDifference]:
+    first, second = aligned(first, weight), aligned(second, weight)
+    indices = range(min(modes, len(first.frequencies)))
+    names = numbered(families(participation(first, blade)))
     out = []
-    partners = pair(of_blade(ours, weight), of_blade(other), indices)
+    partners = pair(of_blade(first, weight), of_blade(second), indices)
     for k, partner in zip(indices, partners, strict=True):
-        theirs, sure = np.nan, np.nan
+        partner_frequency, uncertainty = np.nan, np.nan
         if partner.mode is not None:
-            theirs, sure = (
-                float(other.frequencies[partner.mode]),
-                _uncertainty(ours, k) + _uncertainty(other, partner.mode),
+            partner_frequency, uncertainty = (
+                float(second.frequencies[partner.mode]),
+                _uncertainty(first, k) + _uncertainty(second, partner.mode),
             )
         out.append(
-            ModeDifference(ours.omega, names[k], float(ours.frequencies[k]), theirs, sure, partner.mac, partner.note)
+            ModeDifference(
+                first.omega,
+                names[k],
+                float(first.frequencies[k]),
+                partner_frequency,
+                uncertainty,
+                partner.mac,
+                partner.note,
+            )
         )
     return out
 

@@ -36,8 +36,8 @@ class Confirmed:
 
 def speeds(diagram: Campbell) -> tuple[float, ...]:
     """Speeds (rad/s) at which lines are confirmed: the ends of the operating range, or the first and the last speed."""
-    asked = diagram.request.speeds
-    return tuple(sorted(set(diagram.request.operating or (asked[0], asked[-1]))))
+    requested = diagram.request.speeds
+    return tuple(sorted(set(diagram.request.operating or (requested[0], requested[-1]))))
 
 
 def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
@@ -49,14 +49,14 @@ def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
         for t in np.flatnonzero(tracks.place[k] >= 0):
             mode = int(tracks.place[k, t])
             solved, frequency = tracks.solved[k], float(tracks.frequencies[k, t])
-            sure = float(solved.uncertainty[mode]) if len(solved.uncertainty) else np.inf
+            uncertainty = float(solved.uncertainty[mode]) if len(solved.uncertainty) else np.inf
             cells = [c for c in run.cells if c.omega == omega and c.shares == "nothing" and _is(c, frequency, run)]
             agree = [c for c in cells if c.verdict == "pass"]
-            apart = [c for c in cells if c.verdict not in ("pass", "coarse", "estimate", "measured")]
-            rest = tuple(f"{c.code} ({c.verdict})" for c in apart)
+            dissent = [c for c in cells if c.verdict not in ("pass", "coarse", "estimate", "measured")]
+            dissenting_codes = tuple(f"{c.code} ({c.verdict})" for c in dissent)
             largest = max((abs(c.difference) for c in agree if c.difference is not None), default=np.nan)
             codes = tuple(dict.fromkeys(c.code for c in agree))
-            out.append(Confirmed(int(t), omega, frequency, sure, codes, largest, rest))
+            out.append(Confirmed(int(t), omega, frequency, uncertainty, codes, largest, dissenting_codes))
     return tuple(out)
 
 
@@ -64,6 +64,6 @@ def _is(cell: Cell, frequency: float, run: Run) -> bool:
     """Whether a cell is for the mode of this frequency: the nearest mode of the run, within ``MAX_DISTANCE``."""
     if not (cell.mode and cell.full and cell.role == "code"):
         return False
-    every = {c.full for c in run.cells if c.omega == cell.omega and c.full}
-    nearest = min(every, key=lambda f: abs(f - frequency))
+    frequencies = {c.full for c in run.cells if c.omega == cell.omega and c.full}
+    nearest = min(frequencies, key=lambda f: abs(f - frequency))
     return cell.full == nearest and abs(nearest / frequency - 1.0) < MAX_DISTANCE

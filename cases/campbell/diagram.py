@@ -145,20 +145,20 @@ def campbell(blade: Blade, request: CampbellRequest, solve: Solver | None = None
     weight = weights(blade)
     solve = cache(solve or solver(blade, request))
     tracks = _tracks(solve, request, weight)
-    named, energy_fractions = labels(tracks, blade)
+    mode_labels, energy_fractions = labels(tracks, blade)
     lines = [line_of(tracks, t) for t in range(tracks.count)]
-    met = resonances(solve, tracks, lines, weight, request.per_rev, request.operating)
+    crossings = resonances(solve, tracks, lines, weight, request.per_rev, request.operating)
     return Campbell(
         blade=blade,
         request=request,
         tracks=tracks,
         energy_fractions=energy_fractions,
-        labels=named,
+        labels=mode_labels,
         southwell=tuple(southwell(tracks, t) for t in range(tracks.count)),
         encounters=encounters(tracks, energy_fractions, weight),
-        resonances=met,
+        resonances=crossings,
         unlisted=unlisted(tracks, request.per_rev),
-        margins=margins(lines, met, request.per_rev, request.operating, request.margin),
+        margins=margins(lines, crossings, request.per_rev, request.operating, request.margin),
     )
 
 
@@ -169,10 +169,10 @@ def _tracks(solve: Solver, request: CampbellRequest, weight: Array) -> Tracks:
     """
     tracks = track(solve, request.speeds, weight, request.modes, request.operating or ())
     for _ in range(_ROUNDS):
-        more = near_crossings([line_of(tracks, t) for t in range(tracks.count)], request.per_rev)
-        if not more:
+        added_speeds = near_crossings([line_of(tracks, t) for t in range(tracks.count)], request.per_rev)
+        if not added_speeds:
             break
-        tracks = track(solve, request.speeds, weight, request.modes, (*tracks.omega.tolist(), *more))
+        tracks = track(solve, request.speeds, weight, request.modes, (*tracks.omega.tolist(), *added_speeds))
     return tracks
 
 
@@ -180,10 +180,10 @@ def _on_speeds(request: CampbellRequest) -> CampbellRequest:
     """The request with the ends of the operating range on the speeds that they equal to rounding."""
     if not request.operating:
         return request
-    asked = np.array(request.speeds)
-    nearest = [float(asked[np.abs(asked - end).argmin()]) for end in request.operating]
+    requested = np.array(request.speeds)
+    nearest = [float(requested[np.abs(requested - end).argmin()]) for end in request.operating]
     low, high = (
-        speed if abs(speed - end) <= ROUNDING * asked[-1] else end
+        speed if abs(speed - end) <= ROUNDING * requested[-1] else end
         for speed, end in zip(nearest, request.operating, strict=True)
     )
     return replace(request, operating=(low, high))

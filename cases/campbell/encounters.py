@@ -77,15 +77,15 @@ def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k:
     x = tracks.omega[k] ** 2
     squares = tracks.frequencies[k][:, [i, j]] ** 2
     d = squares[:, 1] - squares[:, 0]
-    above = tracks.place[k, j] > tracks.place[k, i]
-    swaps = np.flatnonzero(above[1:] != above[:-1])
+    is_above = tracks.place[k, j] > tracks.place[k, i]
+    swaps = np.flatnonzero(is_above[1:] != is_above[:-1])
     within_pair = []
     for a in swaps:
         at = x[a] - d[a] * (x[a + 1] - x[a]) / (d[a + 1] - d[a]) if d[a + 1] != d[a] else x[a]
         where = float(np.sqrt(np.clip(at, x[a], x[a + 1])))
         square = float(np.interp(at, x, squares.mean(1)))
         gap = float(tracks.bound[k[a + 1], i, j])
-        pair = (i, j) if above[a] else (j, i)
+        pair = (i, j) if is_above[a] else (j, i)
         within_pair.append(
             _encounter("crossing", tracks, fractions, weight, pair, where, square, gap, (k[a], k[a + 1]), True)
         )
@@ -139,8 +139,8 @@ def _closest(x: Array, size: Array) -> tuple[float, float]:
     middle, scale = x[1], x[2] - x[0]
     c2, c1, c0 = np.polyfit((x - middle) / scale, size**2, 2)
     at = float(np.clip(middle - 0.5 * c1 / c2 * scale, x[0], x[2])) if c2 > 0 else float(middle)
-    least = c0 - 0.25 * c1**2 / c2 if c2 > 0 else size[1] ** 2
-    return at, float(np.sqrt(least)) if least > 0 else float(size[1])
+    square = c0 - 0.25 * c1**2 / c2 if c2 > 0 else size[1] ** 2
+    return at, float(np.sqrt(square)) if square > 0 else float(size[1])
 
 
 def _passed(size: Array, m: int, step: int, smallest: float) -> tuple[int, bool]:

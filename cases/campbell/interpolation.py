@@ -55,15 +55,15 @@ def interpolation_error(blade: Blade, modes: int) -> InterpolationError | None:
     The difference of both solutions is three times the error of the given stations, whose interpolation is of order 2.
     """
     try:
-        given, coarse = (
+        fine, coarse = (
             solve.mesh_modes(b, 0.0, max(ELEMENTS, 4 * modes), modes) for b in (blade, without_every_second(blade))
         )
     except (*NO_STATE, ValueError):
         return None
-    n = min(len(given.frequencies), len(coarse.frequencies))
-    error = SAFETY * np.abs(coarse.frequencies[:n] / given.frequencies[:n] - 1.0) / (2**ORDER - 1)
+    n = min(len(fine.frequencies), len(coarse.frequencies))
+    error = SAFETY * np.abs(coarse.frequencies[:n] / fine.frequencies[:n] - 1.0) / (2**ORDER - 1)
     worst = int(error.argmax())
-    names = list(numbered(families(participation(given, blade))))
+    names = list(numbered(families(participation(fine, blade))))
     return InterpolationError(names[worst], float(error[worst]), len(blade.stations))
 
 
@@ -79,19 +79,19 @@ def without_every_second(blade: Blade) -> Blade:
     The curve, kinks and steps are kept.
     """
     s = blade.stations
-    near = np.diff(s) < STEP * s[-1]
-    steps = np.append(near, False) | np.append(False, near)
+    is_step = np.diff(s) < STEP * s[-1]
+    steps = np.append(is_step, False) | np.append(False, is_step)
     left_out = np.zeros(len(s), dtype=bool)
     if len(s) >= FEWEST:
         left_out[1:-1:2] = True
     left_out &= ~steps
-    kept = ~left_out
+    kept_stations = ~left_out
 
     def at(values: np.ndarray) -> np.ndarray:
         flat = values.reshape(len(s), -1)
         finite = np.where(np.isinf(flat), 0.0, flat)
         columns = [
-            np.where(np.isinf(v).any(), v, np.interp(s, s[kept], f[kept]))
+            np.where(np.isinf(v).any(), v, np.interp(s, s[kept_stations], f[kept_stations]))
             for v, f in zip(flat.T, finite.T, strict=True)
         ]
         return np.stack(columns, axis=1).reshape(values.shape)

@@ -40,9 +40,9 @@ class Labels:
         limits = np.clip([low, high], self.omega[present[0]], self.omega[present[-1]])
         ends = [present[np.abs(self.omega[present] - limit).argmin()] for limit in limits]
         name = self.names[t]
-        first, *changed = [family for family, _ in groupby(self.families[k][t] for k in ends)]
+        first, *later_names = [family for family, _ in groupby(self.families[k][t] for k in ends)]
         start = name if name.split()[0] == first else f"{name} ({first})"
-        return " → ".join((start, *changed))
+        return " → ".join((start, *later_names))
 
 
 def labels(tracks: Tracks, blade: Blade) -> tuple[Labels, Array]:
@@ -52,9 +52,9 @@ def labels(tracks: Tracks, blade: Blade) -> tuple[Labels, Array]:
     kinds: list[tuple[str, ...]] = []
     for k, solved in enumerate(tracks.solved):
         present = np.flatnonzero(tracks.place[k] >= 0)
-        every = participation(solved, blade)
-        fractions[k, present] = every[tracks.place[k, present]]
-        kind, name = families(every), numbered(families(every))
+        energies = participation(solved, blade)
+        fractions[k, present] = energies[tracks.place[k, present]]
+        kind, name = families(energies), numbered(families(energies))
         kinds.append(tuple(kind[p] if p >= 0 else "" for p in tracks.place[k]))
         names = {int(t): name[tracks.place[k, t]] for t in present} | names
     return Labels(_distinct([names[t] for t in range(tracks.count)]), tuple(kinds), tracks.omega), fractions

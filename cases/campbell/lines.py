@@ -71,15 +71,15 @@ class Line:
         """Relative uncertainty of ``at``: the larger of the neighbours', and the deviation of the cubic from a line."""
         x = omega**2
         k = int(np.clip(np.searchsorted(self.squares, x) - 1, 0, len(self.squares) - 2))
-        bent = abs(self.at(omega) ** 2 - float(np.interp(x, self.squares, self.values)))
-        return float(self.uncertainties[k : k + 2].max()) + 0.5 * bent / self.at(omega) ** 2
+        curvature = abs(self.at(omega) ** 2 - float(np.interp(x, self.squares, self.values)))
+        return float(self.uncertainties[k : k + 2].max()) + 0.5 * curvature / self.at(omega) ** 2
 
     def crosses(self, n: int) -> list[float]:
         """Rotor speeds, rad/s, at which the frequency crosses n per revolution, except where it may only touch it."""
         roots = PchipInterpolator(self.squares, self.values - n**2 * self.squares).roots(extrapolate=False)
         speeds = np.sqrt(np.unique(roots[np.isfinite(roots) & (roots > 0)])).tolist()
-        only = self.touches(n).items()
-        return [omega for omega in speeds if not any(abs(omega / at - 1.0) <= width for at, width in only)]
+        touching = self.touches(n).items()
+        return [omega for omega in speeds if not any(abs(omega / at - 1.0) <= width for at, width in touching)]
 
     def touches(self, n: int) -> dict[float, float]:
         """Speeds, rad/s, at which the frequency comes so near to n per revolution that it may touch it, and does not cross it.
@@ -90,7 +90,7 @@ class Line:
         for m in self._minima(n):
             if m.near and m.least <= m.within:
                 at, width = float(np.sqrt(m.square)), float(np.sqrt((m.within + abs(m.least)) / m.curvature))
-                if not any(abs(at / other - 1.0) <= wide for other, wide in widths.items()):
+                if not any(abs(at / touched - 1.0) <= wide for touched, wide in widths.items()):
                     widths[at] = width / (2.0 * m.square)
         return widths
 
@@ -112,10 +112,10 @@ class Line:
             slope = s0 + curvature * h0
             at = x[1] - 0.5 * slope / curvature if curvature > 0 else np.inf
             if x[0] <= at <= x[2] and at > 0:
-                near = bool((np.abs(x - at) <= 2.0 * NEAR * at).any())
-                least = d[1] - 0.25 * slope**2 / curvature
+                is_near = bool((np.abs(x - at) <= 2.0 * NEAR * at).any())
+                smallest = d[1] - 0.25 * slope**2 / curvature
                 yield _Minimum(
-                    float(at), float(least), float(curvature), float(d.min()), float(within[three].max()), near
+                    float(at), float(smallest), float(curvature), float(d.min()), float(within[three].max()), is_near
                 )
 
 

@@ -130,9 +130,9 @@ def machine_diagram(
     def solve(resolution: Resolution | None, speeds: Sequence[float]) -> list[TurbineModes]:
         out: list[TurbineModes] = []
         try:
-            made = machine(turbine, resolution)
+            full_machine = machine(turbine, resolution)
             for speed in speeds:
-                out.append(turbine_modes(made, float(speed), request.modes + SPARE))
+                out.append(turbine_modes(full_machine, float(speed), request.modes + SPARE))
         except PeriodicError as error:
             raise CaseError(f"{turbine.name}: {error}") from error
         except NO_STATE as error:
@@ -143,8 +143,8 @@ def machine_diagram(
     doubt = _doubt((solved[0], solved[-1]), solve(FINER, (omega[0], omega[-1])))
     # from the highest speed downwards: at rest, whirls of a symmetric rotor have no definite shape
     order = tracked(solved[::-1])[::-1]
-    chosen = np.argsort(solved[0].frequencies[order[0]], kind="stable")[: request.modes]
-    mode_lines = [_line(solved, [int(places[t]) for places in order], doubt) for t in chosen]
+    selection = np.argsort(solved[0].frequencies[order[0]], kind="stable")[: request.modes]
+    mode_lines = [_line(solved, [int(places[t]) for places in order], doubt) for t in selection]
     if turbine.blades == 2:
         mode_lines = [replace(line, frequencies=continued(line, omega)) for line in mode_lines]
     lines = _numbered(mode_lines)
@@ -207,9 +207,9 @@ def _crossings(index: int, line: ModeLine, omega: Array, per_rev: Sequence[int])
     values = _between(line, omega, fine)
     out = []
     for n in per_rev:
-        above = values - n * fine
-        for k in np.flatnonzero(np.signbit(above[:-1]) != np.signbit(above[1:])):
-            part = above[k] / (above[k] - above[k + 1])
+        excess = values - n * fine
+        for k in np.flatnonzero(np.signbit(excess[:-1]) != np.signbit(excess[1:])):
+            part = excess[k] / (excess[k] - excess[k + 1])
             out.append(Crossing(index, n, float(fine[k] + part * (fine[k + 1] - fine[k]))))
     return out
 
@@ -223,13 +223,13 @@ def _margins(lines: Sequence[ModeLine], omega: Array, request: MachineRequest) -
     for index, line in enumerate(lines):
         values = _between(line, omega, speeds)
         for n in request.per_rev:
-            apart = values - n * speeds
-            meets = bool((np.signbit(apart[:-1]) != np.signbit(apart[1:])).any())
-            relative = np.abs(apart) / (n * speeds)
+            distance = values - n * speeds
+            meets = bool((np.signbit(distance[:-1]) != np.signbit(distance[1:])).any())
+            relative = np.abs(distance) / (n * speeds)
             k = int(relative.argmin())
             required = np.array([request.margin.distance(n * speed) for speed in speeds.tolist()])
-            kept = not meets and bool((np.abs(apart) * (1 - line.uncertainty) >= required).all())
-            out.append(Nearest(index, n, float(speeds[k]), 0.0 if meets else float(relative[k]), kept))
+            is_kept = not meets and bool((np.abs(distance) * (1 - line.uncertainty) >= required).all())
+            out.append(Nearest(index, n, float(speeds[k]), 0.0 if meets else float(relative[k]), is_kept))
     return tuple(out)
 
 

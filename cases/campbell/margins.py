@@ -66,21 +66,21 @@ def southwell(tracks: Tracks, t: int) -> Southwell | None:
         return None
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
     inverse = np.linalg.pinv(np.stack([np.ones(len(k)), omega**2], axis=1))
-    rest, slope = inverse @ frequency**2
-    fitted = np.sqrt(np.maximum(rest + slope * omega**2, 0.0))
+    rest_square, slope = inverse @ frequency**2
+    fitted = np.sqrt(np.maximum(rest_square + slope * omega**2, 0.0))
     residual = float(np.abs(fitted / frequency - 1.0).max())
     doubt = float(np.abs(inverse[1]) @ (2.0 * tracks.uncertainty[k, t] * frequency**2))
-    return Southwell(float(np.sqrt(max(rest, 0.0))), float(slope), residual, doubt)
+    return Southwell(float(np.sqrt(max(rest_square, 0.0))), float(slope), residual, doubt)
 
 
 def margins(
     lines: Sequence[Line | None],
-    met: Sequence[Resonance],
+    crossings: Sequence[Resonance],
     per_rev: Sequence[int],
     operating: Range | None,
     required: RequiredMargin,
 ) -> tuple[Margin, ...]:
-    """Margins of each line that spans the operating range, for each n; ``met``: resonances; ``required``: required margin."""
+    """Margins (``required``: at least) for each n of each line that spans the range; ``crossings``: resonances."""
     if operating is None:
         return ()
     low, high = operating
@@ -92,11 +92,11 @@ def margins(
             at = np.unique([max(low, 1e-9 * high), *[o for o in np.sqrt(line.squares) if low < o < high], high])
             unit = 1.0 if required.unit else n * at
             values = (np.array([line.at(min(max(o, line.first), line.last)) for o in at]) - n * at) / unit
-            inside = [r.omega for r in met if (r.track, r.per_rev) == (t, n) and low <= r.omega <= high]
+            inside = [r.omega for r in crossings if (r.track, r.per_rev) == (t, n) and low <= r.omega <= high]
             k = int(np.abs(values).argmin())
-            least, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
-            frequency = least + (n * where if required.unit else 1.0)
-            sure = 0.0 if inside else frequency * line.uncertainty(min(max(where, line.first), line.last))
-            kept = bool(abs(least) - sure >= required.value)
-            out.append(Margin(t, n, float(values[0]), float(values[-1]), least, where, sure, kept))
+            smallest, where = (0.0, float(inside[0])) if inside else (float(values[k]), float(at[k]))
+            frequency = smallest + (n * where if required.unit else 1.0)
+            uncertainty = 0.0 if inside else frequency * line.uncertainty(min(max(where, line.first), line.last))
+            is_kept = bool(abs(smallest) - uncertainty >= required.value)
+            out.append(Margin(t, n, float(values[0]), float(values[-1]), smallest, where, uncertainty, is_kept))
     return tuple(out)

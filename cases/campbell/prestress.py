@@ -23,8 +23,8 @@ def gravity(azimuth: float, tilt: float = 0.0) -> Array:
         tilt: rad, of the rotor's axis, positive with its upwind end raised, as the tilt of an upwind rotor: +z (downwind)
             points below the horizontal. OpenFAST's ShftTilt has the opposite sign.
     """
-    up = np.array([np.cos(azimuth) * np.cos(tilt), -np.sin(azimuth) * np.cos(tilt), -np.sin(tilt)])
-    return -STANDARD_GRAVITY * up
+    vertical = np.array([np.cos(azimuth) * np.cos(tilt), -np.sin(azimuth) * np.cos(tilt), -np.sin(tilt)])
+    return -STANDARD_GRAVITY * vertical
 
 
 LOAD = ("fraction [-]", "fx [N/m]", "fy [N/m]", "fz [N/m]")
@@ -45,13 +45,13 @@ def load(path: Path, blade: Blade) -> Array:
     if at[0] != 0.0 or at[-1] != 1.0 or (np.diff(at) <= 0).any():
         raise CaseError(f"{path}: {LOAD[0]}: from {at[0]:g} to {at[-1]:g}: rows must ascend from 0 (root) to 1 (tip)")
     stations = blade.stations / blade.length
-    given = np.stack([table[name] for name in LOAD[1:]], axis=-1)
-    per_length = _linear(stations, at, given)
-    off = np.abs(_linear(at, stations, per_length) - given).max(1)
-    if off.max() > 1e-6 * np.abs(given).max():
+    forces = np.stack([table[name] for name in LOAD[1:]], axis=-1)
+    per_length = _linear(stations, at, forces)
+    deviation = np.abs(_linear(at, stations, per_length) - forces).max(1)
+    if deviation.max() > 1e-6 * np.abs(forces).max():
         raise CaseError(
-            f"{path}: {LOAD[0]} {at[off.argmax()]:g}: the load is not linear between the blade's {len(stations)} stations: "
-            "add a station to the blade there, or give the load at its stations only"
+            f"{path}: {LOAD[0]} {at[deviation.argmax()]:g}: the load is not linear between the blade's {len(stations)} "
+            "stations: add a station to the blade there, or give the load at its stations only"
         )
     return per_length
 

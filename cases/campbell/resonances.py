@@ -76,10 +76,10 @@ def resonances(
         for n in per_rev if line is not None else ():
             assert line is not None
             for start in line.crosses(n):
-                omega, sure = _solved(solve, tracks, t, line, weight, n, start)
-                crossings.append(Resonance(t, n, omega, n * omega, sure, _apart(omega, operating)))
-            for omega, sure in line.touches(n).items():
-                crossings.append(Resonance(t, n, omega, n * omega, sure, _apart(omega, operating), touches=True))
+                omega, uncertainty = _solved(solve, tracks, t, line, weight, n, start)
+                crossings.append(Resonance(t, n, omega, n * omega, uncertainty, _apart(omega, operating)))
+            for omega, uncertainty in line.touches(n).items():
+                crossings.append(Resonance(t, n, omega, n * omega, uncertainty, _apart(omega, operating), touches=True))
     return tuple(sorted(crossings, key=lambda r: (r.omega, r.per_rev)))
 
 
@@ -98,9 +98,9 @@ def unlisted(tracks: Tracks, per_rev: Sequence[int]) -> tuple[Unlisted, ...]:
     for n in per_rev:
         below = present & (np.nan_to_num(tracks.frequencies, nan=np.inf) < n * tracks.omega[:, None])
         both = present[1:] & present[:-1]
-        lost = (below[1:] & ~both).sum(1) - (below[:-1] & ~both).sum(1)
-        for k in np.flatnonzero(lost).tolist():
-            out.append(Unlisted(n, (float(tracks.omega[k]), float(tracks.omega[k + 1])), int(lost[k])))
+        missed = (below[1:] & ~both).sum(1) - (below[:-1] & ~both).sum(1)
+        for k in np.flatnonzero(missed).tolist():
+            out.append(Unlisted(n, (float(tracks.omega[k]), float(tracks.omega[k + 1])), int(missed[k])))
     return tuple(out)
 
 
@@ -130,11 +130,11 @@ def _solved(
         noise = 2.0 * float(modes.uncertainty[mode]) * square if len(modes.uncertainty) else np.inf
         floor = noise if np.isfinite(noise) else 0.0
         distance = square - n**2 * x
-        others = [y for y in distances if y != x and abs(distances[y] - distance) > _CERTAIN * floor]
-        if others and (step or doubt > _STEEP):
-            near = min(others, key=lambda y: abs(y - x))
-            now = (distance - distances[near]) / (x - near)
-            doubt, slope = abs(now / slope - 1.0) if slope else 1.0, now
+        references = [y for y in distances if y != x and abs(distances[y] - distance) > _CERTAIN * floor]
+        if references and (step or doubt > _STEEP):
+            nearest = min(references, key=lambda y: abs(y - x))
+            slope_now = (distance - distances[nearest]) / (x - nearest)
+            doubt, slope = abs(slope_now / slope - 1.0) if slope else 1.0, slope_now
         distances[x] = distance
         low, high = (x, high) if distance * distances[low] > 0 else (low, x)
         move = -distance / slope if slope else np.inf
@@ -145,10 +145,10 @@ def _solved(
     return interpolated
 
 
-def _same(tracks: Tracks, t: int, near: NDArray[np.intp], solved: Modes, weight: Array) -> int | None:
+def _same(tracks: Tracks, t: int, indices: NDArray[np.intp], solved: Modes, weight: Array) -> int | None:
     """The mode whose shape is that of the track at both neighbouring speeds; None if that is not certain."""
     modes = set()
-    for k in near:
+    for k in indices:
         table = mac(tracks.shapes[k, [t]], solved.shapes, weight)[0]
         modes.add(int(table.argmax()) if table.max() >= MIN_MAC else -1)
     return modes.pop() if len(modes) == 1 and -1 not in modes else None

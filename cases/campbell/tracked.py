@@ -47,11 +47,11 @@ def tracked(
         CaseError: if a requested speed has no stable steady state, or one of large strain.
     """
     tracks = _tracks(blade, request, at, solve)
-    named, _ = labels(tracks, blade)
+    mode_labels, _ = labels(tracks, blade)
     names = [numbered(families(participation(modes, blade))) for modes in tracks.solved]
     return tuple(
         TrackedMode(
-            named[t],
+            mode_labels[t],
             tuple(
                 NamedMode(
                     float(tracks.omega[k]),

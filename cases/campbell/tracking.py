@@ -111,10 +111,10 @@ def track(
     speeds: Sequence[float] | Array,
     weight: Array,
     count: int,
-    more: Sequence[float] = (),
+    added_speeds: Sequence[float] = (),
     smallest_step: float = SMALLEST,
 ) -> Tracks:
-    """Track the ``count`` lowest modes over ``speeds`` (rad/s, ascending) and ``more`` speeds between them.
+    """Track the ``count`` lowest modes over ``speeds`` (rad/s, ascending) and ``added_speeds`` between them.
 
     A mode that is among the ``count`` lowest at any speed is tracked over all speeds, as far as ``solve`` returns it;
     ``solve`` should therefore return a few more modes. ``smallest_step`` is a fraction of the largest step of ``speeds``; with
@@ -127,7 +127,7 @@ def track(
         raise ValueError(f"speeds: {list(speeds)}: not ascending: sort them and remove duplicates")
     smallest = smallest_step * float(np.diff(speeds).max(initial=0.0))
     points, links = [_solved(solve, speeds[0], weight)], []
-    for omega in sorted({float(v) for v in (*speeds, *more)})[1:]:
+    for omega in sorted({float(v) for v in (*speeds, *added_speeds)})[1:]:
         for link, modes in _between(solve, points[-1], _solved(solve, omega, weight), weight, count, smallest):
             links.append(link)
             points.append(modes)
@@ -165,11 +165,11 @@ def _link(a: Modes, b: Modes, weight: Array) -> _Link:
 def _bound(a: Modes, b: Modes, before: tuple[int, int], after: tuple[int, int], table: Array) -> float:
     """Upper bound, rad/s, on the gap between two modes that swap places over a step."""
     (i, j), (p, q) = before, after
-    turn = np.arcsin(np.sqrt(min(max(table[i, q], table[j, p]), 1.0)))
-    apart = [abs(x[m] ** 2 - x[n] ** 2) for x, (m, n) in ((a.frequencies, before), (b.frequencies, after))]
-    if min(apart) == 0.0:
+    angle = np.arcsin(np.sqrt(min(max(table[i, q], table[j, p]), 1.0)))
+    gaps = [abs(x[m] ** 2 - x[n] ** 2) for x, (m, n) in ((a.frequencies, before), (b.frequencies, after))]
+    if min(gaps) == 0.0:
         return 0.0
-    coupling = turn / (1.0 / apart[0] + 1.0 / apart[1])
+    coupling = angle / (1.0 / gaps[0] + 1.0 / gaps[1])
     return float(coupling / a.frequencies[i])  # a gap of 2κ in ω²
 
 
@@ -194,20 +194,20 @@ def _strung(
         for i in range(len(owner[k])):
             p = after.get(i)
             value = float(link.table[i, p]) if p is not None else 0.0
-            taken = p is not None and value >= LOST
-            if taken and p is not None:
+            is_linked = p is not None and value >= LOST
+            if is_linked and p is not None:
                 line_at[p] = owner[k][i]
             if value < MIN_MAC and (i < count or (p is not None and p < count)):
                 rival = float(np.delete(link.table[i], p if p is not None else []).max(initial=0.0))
                 step = (points[k].omega, points[k + 1].omega)
                 frequency = float(points[k].frequencies[i])
-                doubts.append(Doubt(step, owner[k][i], frequency, value if taken else 0.0, rival))
+                doubts.append(Doubt(step, owner[k][i], frequency, value if is_linked else 0.0, rival))
         for p, name in enumerate(line_at):
             if name < 0:
                 line_at[p], tracks = tracks, tracks + 1
         owner.append(line_at)
-    kept = sorted({name for names in owner for name in names[:count]}, key=lambda t: _first(owner, t))
-    return _tables(points, links, owner, kept, doubts, speeds, smallest)
+    names_of_lines = sorted({name for names in owner for name in names[:count]}, key=lambda t: _first(owner, t))
+    return _tables(points, links, owner, names_of_lines, doubts, speeds, smallest)
 
 
 def _first(owner: Sequence[Sequence[int]], name: int) -> tuple[int, int]:
@@ -218,14 +218,14 @@ def _tables(
     points: Sequence[Modes],
     links: Sequence[_Link],
     owner: Sequence[Sequence[int]],
-    kept: Sequence[int],
+    names: Sequence[int],
     doubts: Sequence[Doubt],
     speeds: Sequence[float] | Array,
     smallest: float,
 ) -> Tracks:
-    n, t = len(points), len(kept)
-    column = {name: i for i, name in enumerate(kept)}
-    frequencies, sure, similar = (np.full((n, t), np.nan) for _ in range(3))
+    n, t = len(points), len(names)
+    column = {name: i for i, name in enumerate(names)}
+    frequencies, uncertainties, similar = (np.full((n, t), np.nan) for _ in range(3))
     place = np.full((n, t), -1)
     shapes = np.full((n, t, *points[0].shapes.shape[1:]), np.nan, complex)
     bound = np.full((n, t, t), np.nan)
@@ -234,7 +234,7 @@ def _tables(
         for p, name in enumerate(owner[k]):
             if name in column:
                 i = column[name]
-                sure[k, i] = uncertainty[p]
+                uncertainties[k, i] = uncertainty[p]
                 frequencies[k, i], place[k, i], shapes[k, i] = modes.frequencies[p], p, modes.shapes[p]
                 if k and name in owner[k - 1]:
                     similar[k, i] = links[k - 1].table[owner[k - 1].index(name), p]
@@ -245,4 +245,6 @@ def _tables(
     omega = np.array([modes.omega for modes in points])
     unclear = tuple(Doubt(d.omega, column[d.track], d.frequency, d.mac, d.rival) for d in doubts if d.track in column)
     asked = np.isin(omega, speeds)
-    return Tracks(omega, asked, frequencies, sure, place, similar, shapes, tuple(points), bound, unclear, smallest)
+    return Tracks(
+        omega, asked, frequencies, uncertainties, place, similar, shapes, tuple(points), bound, unclear, smallest
+    )

@@ -102,7 +102,7 @@ def read(path: Path) -> Condensed:
         CaseError: if the file does not exist, its format is invalid, or a matrix has the wrong size.
     """
     try:
-        kept = msgspec.json.decode(read_bytes(path, LARGEST_DATA), type=_Kept)
+        record = msgspec.json.decode(read_bytes(path, LARGEST_DATA), type=_Kept)
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file: correct the path") from None
     except OSError as error:
@@ -111,7 +111,7 @@ def read(path: Path) -> Condensed:
         raise CaseError(f"{path}: {error}: not written by `southwell condense`; condense again") from error
     sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "body_twist": 6}
     pieces = []
-    for k, piece in enumerate(kept.segments):
+    for k, piece in enumerate(record.segments):
         matrices = {
             field: _square(path, f"segments[{k}].{field}", getattr(piece, field), n) for field, n in sizes.items()
         }
@@ -121,10 +121,10 @@ def read(path: Path) -> Condensed:
         if not _is_pose(matrices["undeformed"]):
             raise CaseError(f"{path}: segments[{k}].undeformed: not a rotation and a displacement: {CHANGED}")
         pieces.append(Segment(**matrices))
-    root = _square(path, "root", kept.root, 4)
+    root = _square(path, "root", record.root, 4)
     if not _is_pose(root):
         raise CaseError(f"{path}: root: not a rotation and a displacement: {CHANGED}")
-    return Condensed(kept.name, root, pieces)
+    return Condensed(record.name, root, pieces)
 
 
 def _positive(matrix: Array) -> bool:

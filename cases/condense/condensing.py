@@ -74,40 +74,42 @@ def _condense(path: Path) -> Condensation:
 
 
 def _in_place(path: Path, spec: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
-    whole = read(path, "", spec, spec, spec.units)
-    if whole.mass is None:
+    blade_model = read(path, "", spec, spec, spec.units)
+    if blade_model.mass is None:
         raise CaseError(f"{path}: mass: missing: name the file of a mass matrix")
-    tied = [_tie(spec, whole, frames, k) for k in range(len(frames))]
-    return [whole], condensation.segments_in_place(whole.model, tied, _shares(path, whole.model, whole.mass, frames))
+    sections = [_tie(spec, blade_model, frames, k) for k in range(len(frames))]
+    return [blade_model], condensation.segments_in_place(
+        blade_model.model, sections, _shares(path, blade_model.model, blade_model.mass, frames)
+    )
 
 
 def _apart(path: Path, spec: CondenseFile, frames: Sequence[Array]) -> tuple[list[Whole], list[Segment]]:
     models, out = [], []
     for k, piece in enumerate(spec.segments):
         field = f"segments[{k}]."
-        whole = read(path, field, piece, spec, spec.units)
-        a, b = (_tie(spec, whole, frames, i) for i in (k, k + 1))
-        models.append(whole)
-        out.append(_one(path, field, spec, piece, whole, a, b))
+        piece_model = read(path, field, piece, spec, spec.units)
+        a, b = (_tie(spec, piece_model, frames, i) for i in (k, k + 1))
+        models.append(piece_model)
+        out.append(_one(path, field, spec, piece, piece_model, a, b))
     return models, out
 
 
-def _one(path: Path, field: str, spec: CondenseFile, piece: Piece, whole: Whole, a: Tie, b: Tie) -> Segment:
+def _one(path: Path, field: str, spec: CondenseFile, piece: Piece, piece_model: Whole, a: Tie, b: Tie) -> Segment:
     """A segment from its own model; by ``segment_from_matrix`` if it has no nodes between its ends, or its mass is given."""
     name = f"{a.name} to {b.name}"
-    tied = np.union1d(a.freedoms, b.freedoms)
+    boundary = np.union1d(a.freedoms, b.freedoms)
     if piece.body is not None:
-        if whole.mass is not None:
+        if piece_model.mass is not None:
             raise CaseError(f"{path}: {field}body: the mass is also given as a matrix: give one of them")
         J = _body(path, field, piece.body, METRES[spec.units], a.frame)
-    elif whole.mass is None:
+    elif piece_model.mass is None:
         raise CaseError(f"{path}: {field}mass: missing: name the file of a mass matrix, or give body")
-    elif len(tied) < len(whole.model.directions):
-        return condensation.segment(whole.model, a, b)
+    elif len(boundary) < len(piece_model.model.directions):
+        return condensation.segment(piece_model.model, a, b)
     else:
-        R = ties.motion(whole.model.points, whole.model.directions, a.frame)
-        J = R.T @ (whole.mass @ R)
-    return segment_from_matrix(condensation.condense(whole.model, (a, b)).stiffness, ties.seen(a, b), J, name)
+        R = ties.motion(piece_model.model.points, piece_model.model.directions, a.frame)
+        J = R.T @ (piece_model.mass @ R)
+    return segment_from_matrix(condensation.condense(piece_model.model, (a, b)).stiffness, ties.seen(a, b), J, name)
 
 
 def _body(path: Path, field: str, body: Body, metres: float, frame: Array) -> Array:
@@ -183,20 +185,20 @@ def _name(spec: CondenseFile, k: int) -> str:
     return f"{list(at.point)} {unit}" if isinstance(at, At) else f"{at:g} {unit}"
 
 
-def _tie(spec: CondenseFile, whole: Whole, frames: Sequence[Array], k: int) -> Tie:
+def _tie(spec: CondenseFile, loaded_model: Whole, frames: Sequence[Array], k: int) -> Tie:
     at = spec.sections[k]
     kind = (at.tie if isinstance(at, At) else None) or (spec.root if k == 0 else spec.tie)
     name = _name(spec, k)
     if kind == "rigid" or spec.weights == "mass":
-        return ties.section(whole.model, frames[k], name, kind)
-    on = ties.section(whole.model, frames[k], name, "rigid").freedoms
+        return ties.section(loaded_model.model, frames[k], name, kind)
+    on = ties.section(loaded_model.model, frames[k], name, "rigid").freedoms
     if spec.weights == "even":
-        return ties.average(whole.model, on, frames[k], name, np.ones(len(on)))
-    if whole.mass is None:
+        return ties.average(loaded_model.model, on, frames[k], name, np.ones(len(on)))
+    if loaded_model.mass is None:
         raise CondensationError(
-            f"weights: 'mass matrix': {whole.model.name} has no mass matrix: give one, or use even weights"
+            f"weights: 'mass matrix': {loaded_model.model.name} has no mass matrix: give one, or use even weights"
         )
-    return ties.average(whole.model, on, frames[k], name, whole.mass[on][:, on].toarray())
+    return ties.average(loaded_model.model, on, frames[k], name, loaded_model.mass[on][:, on].toarray())
 
 
 def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Sequence[Array]) -> Array:
@@ -209,14 +211,14 @@ def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Seque
         CaseError: nodes beyond the first or last section.
     """
     size = TOLERANCE * float(np.ptp(model.points, axis=0).max())
-    ahead = np.stack([(model.points - f[:3, 3]) @ f[:3, 0] for f in frames])  # (sections, freedoms)
-    passed = (ahead > size).sum(axis=0)  # sections behind each freedom
-    on = np.abs(ahead) <= size
+    distance = np.stack([(model.points - f[:3, 3]) @ f[:3, 0] for f in frames])  # (sections, freedoms)
+    passed = (distance > size).sum(axis=0)  # sections behind each freedom
+    on = np.abs(distance) <= size
     for outside, end in (((passed == 0) & ~on[0], 0), (passed == len(frames), -1)):
         if outside.any():
-            far = np.abs(ahead[end, outside]).max()
+            farthest = np.abs(distance[end, outside]).max()
             raise CaseError(
-                f"{path}: sections[{end % len(frames)}]: {outside.sum()} freedoms of {model.name} lie up to {far:g} m "
+                f"{path}: sections[{end % len(frames)}]: {outside.sum()} freedoms of {model.name} lie up to {farthest:g} m "
                 "beyond it: put the first and last sections at the model's ends"
             )
     out = np.zeros((len(frames) - 1, len(model.directions)))
@@ -228,7 +230,7 @@ def _shares(path: Path, model: FiniteElements, mass: ss.csr_array, frames: Seque
         if k in (0, len(frames) - 1):
             out[0 if k == 0 else -1, on_section] = model.mass[on_section]
             continue
-        before, after = (sizes[on_section] @ side.astype(float) for side in (ahead[k] < -size, ahead[k] > size))
+        before, after = (sizes[on_section] @ side.astype(float) for side in (distance[k] < -size, distance[k] > size))
         both = before + after
         share = np.where(both > 0, before / np.where(both > 0, both, 1.0), 0.5)
         out[k - 1, on_section], out[k, on_section] = (

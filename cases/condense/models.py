@@ -65,17 +65,17 @@ def read(path: Path, field: str, spec: Model, common: Model, units: str) -> Whol
     nodes = spec.nodes or common.nodes
     if nodes is None:
         raise CaseError(f"{path}: {field}nodes: missing: name a CSV of {', '.join(NODES)}")
-    place = _places(path.parent / nodes)
+    positions = _places(path.parent / nodes)
     listed = spec.freedoms if spec.freedoms is not None else common.freedoms
     mass = None
     try:
-        stiffness = _named(_load(path.parent, spec.stiffness, "stiffness"), listed, place, path, field)
+        stiffness = _named(_load(path.parent, spec.stiffness, "stiffness"), listed, positions, path, field)
         if spec.mass is not None:
-            mass = _named(_load(path.parent, spec.mass, "mass"), listed, place, path, field)
-        for what, matrix in (("stiffness", stiffness), ("mass", mass)):
+            mass = _named(_load(path.parent, spec.mass, "mass"), listed, positions, path, field)
+        for quantity, matrix in (("stiffness", stiffness), ("mass", mass)):
             if matrix is not None:
-                _no_negative(f"{path}: {field}{what}", matrix)
-        model = exported.model(stiffness, place, mass)
+                _no_negative(f"{path}: {field}{quantity}", matrix)
+        model = exported.model(stiffness, positions, mass)
     except (MatrixFileError, CondensationError) as error:
         raise CaseError(f"{path}: {field}{error}") from error
     model = _si(model, METRES[units])
@@ -87,14 +87,14 @@ def read(path: Path, field: str, spec: Model, common: Model, units: str) -> Whol
 
 
 def _load(folder: Path, spec: str | Matrix, quantity: str) -> Exported:
-    name, chosen = (spec.file, spec.matrix) if isinstance(spec, Matrix) else (spec, quantity)
+    name, matrix = (spec.file, spec.matrix) if isinstance(spec, Matrix) else (spec, quantity)
     path = folder / name
     files.inside(path)
     try:
         return (
             matrix_files.stored(path)
             if os.path.isfile(path.with_suffix(".dof"))
-            else matrix_files.read_matrix(path, chosen)
+            else matrix_files.read_matrix(path, matrix)
         )
     except FileNotFoundError:
         raise CaseError(
@@ -123,14 +123,14 @@ def _places(path: Path) -> dict[int, Array]:
 
 
 def _integers(path: Path, column: str, values: Array) -> NDArray[np.intp]:
-    wrong = (values != np.round(values)) | (np.abs(values) >= LARGEST_ID)
-    if wrong.any():
-        raise CaseError(f"{path}: {column}: {values[wrong.argmax()]:g}: labels are whole numbers: correct it")
+    invalid = (values != np.round(values)) | (np.abs(values) >= LARGEST_ID)
+    if invalid.any():
+        raise CaseError(f"{path}: {column}: {values[invalid.argmax()]:g}: labels are whole numbers: correct it")
     return values.astype(np.intp)
 
 
 def _named(
-    matrix: Exported, listed: str | Sequence[int] | None, place: dict[int, Array], path: Path, field: str
+    matrix: Exported, listed: str | Sequence[int] | None, positions: dict[int, Array], path: Path, field: str
 ) -> Exported:
     if len(matrix.nodes):
         if listed is not None:
@@ -150,8 +150,8 @@ def _named(
             f"{listed} lists {len(table['node'])}",
         )
     else:
-        pairs = np.array([(n, f) for n in place for f in listed])
-        spec = f"{len(place)} nodes with {len(listed)} each are {len(pairs)}"
+        pairs = np.array([(n, f) for n in positions for f in listed])
+        spec = f"{len(positions)} nodes with {len(listed)} each are {len(pairs)}"
     if len(pairs) != rows:
         raise CaseError(
             f"{path}: {field}freedoms: {spec}, {matrix.name} has {rows} rows: both must be of the same unconstrained model"
@@ -188,10 +188,10 @@ def _unsupported(path: Path, field: str, model: FiniteElements) -> float:
         CaseError: naming the motion.
     """
     R = ties.motion(model.points - model.points.mean(axis=0), model.directions, np.eye(4))
-    most = (abs(model.stiffness) @ np.abs(R)).max(
+    scale = (abs(model.stiffness) @ np.abs(R)).max(
         axis=0
     )  # none at all where nothing resists the motion, nor any part of it
-    residual = np.abs(model.stiffness @ R).max(axis=0) / np.where(most > 0, most, 1.0)
+    residual = np.abs(model.stiffness @ R).max(axis=0) / np.where(scale > 0, scale, 1.0)
     if residual.max() > ties.ASYMMETRY:
         k = int(residual.argmax())
         motion = f"{'translation along' if k < 3 else 'rotation about'} {'xyz'[k % 3]}"

@@ -41,10 +41,10 @@ def require_close(values: Any, exact: Any, label: str, within: float, first: int
     values, exact = np.atleast_1d(values), np.atleast_1d(exact)
     require(len(values) >= len(exact), f"{label}: {len(values)} modes, {len(exact)} expected")
     values = values[: len(exact)]
-    off = np.abs(values / exact - 1.0)
-    k = int(off.argmax())
+    deviation = np.abs(values / exact - 1.0)
+    k = int(deviation.argmax())
     message = f"{label}, mode {first + k}: {values[k]:.9g} rad/s, expected {exact[k]:.9g}"
-    require(off[k] <= within, f"{message}: {off[k]:.1e} apart, at most {within:.0e}")
+    require(deviation[k] <= within, f"{message}: {deviation[k]:.1e} apart, at most {within:.0e}")
 
 
 def named(code: Adapter) -> None:

@@ -55,9 +55,9 @@ FAST = 10.0
 def coupled_plank() -> Blade:
     """The plank with principal bending axes rotated in the section: coupled planes, same frequencies."""
     c, s = np.cos(TURN), np.sin(TURN)
-    turn, stiffness = np.array([[c, -s], [s, c]]), PLANK.stiffness.copy()
-    both = slice(BEND_Y, BEND_Z + 1)
-    stiffness[:, both, both] = turn @ np.diag([EI, 4 * EI]) @ turn.T
+    rotation, stiffness = np.array([[c, -s], [s, c]]), PLANK.stiffness.copy()
+    bending = slice(BEND_Y, BEND_Z + 1)
+    stiffness[:, bending, bending] = rotation @ np.diag([EI, 4 * EI]) @ rotation.T
     return replace(PLANK, name="coupled plank", stiffness=stiffness)
 
 
@@ -110,10 +110,17 @@ def cornered() -> tuple[Blade, float]:
     ``EI w₁‴ = −m a ω² w₁``; rotation and moment are continuous at the corner. Inner: C (cosh − cos) + D (sinh − sin);
     outer, without transverse displacement at the corner: A sin + B sinh + E (cos − cosh), free at its end.
     """
-    half = 0.5 * LENGTH
-    curve = np.array([[0.0, 0.0, 0.0], [half, 0.0, 0.0], [half, half, 0.0]])
-    same = {name: np.repeat(getattr(BEAM, name)[:1], 3, axis=0) for name in ("stiffness", "mass", "twist")}
-    blade = replace(BEAM, name="beam with a corner", stations=[0.0, half, LENGTH], curve=curve, kinks=(half,), **same)
+    half_length = 0.5 * LENGTH
+    curve = np.array([[0.0, 0.0, 0.0], [half_length, 0.0, 0.0], [half_length, half_length, 0.0]])
+    properties = {name: np.repeat(getattr(BEAM, name)[:1], 3, axis=0) for name in ("stiffness", "mass", "twist")}
+    blade = replace(
+        BEAM,
+        name="beam with a corner",
+        stations=[0.0, half_length, LENGTH],
+        curve=curve,
+        kinks=(half_length,),
+        **properties,
+    )
 
     def fits(x: float) -> float:
         c, s, C, S = np.cos(x), np.sin(x), np.cosh(x), np.sinh(x)
@@ -126,7 +133,7 @@ def cornered() -> tuple[Blade, float]:
         ]
         return float(np.linalg.det(rows))
 
-    beta = root_scalar(fits, bracket=(0.5, 1.3)).root / half
+    beta = root_scalar(fits, bracket=(0.5, 1.3)).root / half_length
     return blade, float(np.sqrt(EI / MASS) * beta**2)
 
 
@@ -147,8 +154,10 @@ class Property:
 def _along(blade: Blade, stations: int = 13) -> Blade:
     """The same straight uniform blade with more stations."""
     s = np.linspace(0.0, blade.length, stations)
-    same = {name: np.repeat(getattr(blade, name)[:1], stations, axis=0) for name in ("stiffness", "mass", "twist")}
-    return replace(blade, stations=s, curve=np.outer(s, [1.0, 0.0, 0.0]), **same)
+    properties = {
+        name: np.repeat(getattr(blade, name)[:1], stations, axis=0) for name in ("stiffness", "mass", "twist")
+    }
+    return replace(blade, stations=s, curve=np.outer(s, [1.0, 0.0, 0.0]), **properties)
 
 
 def _arc(axis: int) -> Blade:
@@ -174,8 +183,8 @@ def _twisted() -> Blade:
 def _joined(row: int, column: int) -> Blade:
     """Two strains coupled by 0.6 of the value that would make the section unstable."""
     stiffness = BEAM.stiffness.copy()
-    both = 0.6 * np.sqrt(stiffness[:, row, row] * stiffness[:, column, column])
-    stiffness[:, row, column] = stiffness[:, column, row] = both
+    limit = 0.6 * np.sqrt(stiffness[:, row, row] * stiffness[:, column, column])
+    stiffness[:, row, column] = stiffness[:, column, row] = limit
     return replace(BEAM, stiffness=stiffness)
 
 

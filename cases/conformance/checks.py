@@ -79,31 +79,36 @@ def turning(code: BladeAdapter) -> None:
 
 def counts(code: BladeAdapter) -> None:
     """The requested number of modes is returned."""
-    few, many = (ask(code, BEAM, blades.SPEED, 0, count) for count in (3, 8))
-    for modes, count in ((few, 3), (many, 8)):
+    three_modes, eight_modes = (ask(code, BEAM, blades.SPEED, 0, count) for count in (3, 8))
+    for modes, count in ((three_modes, 3), (eight_modes, 8)):
         f = modes.frequencies
         require(3 <= len(f) <= count, f"beam at {blades.SPEED:g} rad/s: {count} modes requested, {len(f)} returned")
-        bad = np.flatnonzero(~(f > 0) | (np.diff(f, prepend=0.0) < 0))
+        invalid = np.flatnonzero(~(f > 0) | (np.diff(f, prepend=0.0) < 0))
         require(
-            not bad.size,
-            f"beam at {blades.SPEED:g} rad/s, mode {int(bad[0]) + 1 if bad.size else 0}: frequencies {f.tolist()}: not "
+            not invalid.size,
+            f"beam at {blades.SPEED:g} rad/s, mode {int(invalid[0]) + 1 if invalid.size else 0}: frequencies {f.tolist()}: not "
             "positive and ascending",
         )
         require(modes.omega == blades.SPEED, f"Modes.omega: {modes.omega}, requested {blades.SPEED}")
         require(modes.elements >= code.levels[0], f"Modes.elements: {modes.elements}, requested {code.levels[0]}")
-    require_close(many.frequencies, few.frequencies, f"beam at {blades.SPEED:g} rad/s, 3 and 8 requested", same(code))
+    require_close(
+        eight_modes.frequencies,
+        three_modes.frequencies,
+        f"beam at {blades.SPEED:g} rad/s, 3 and 8 requested",
+        same(code),
+    )
 
 
 def repeats(code: BladeAdapter) -> None:
     """No state remains from another call."""
     first = ask(code, BEAM, blades.SPEED, 0)
     ask(code, replace(BEAM, hub_radius=1.0), 1.0, 1)
-    again = ask(code, BEAM, blades.SPEED, 0)
-    alike = np.array_equal(first.frequencies, again.frequencies) and np.array_equal(first.shapes, again.shapes)
+    second = ask(code, BEAM, blades.SPEED, 0)
+    is_equal = np.array_equal(first.frequencies, second.frequencies) and np.array_equal(first.shapes, second.shapes)
     require(
-        alike,
+        is_equal,
         f"beam at {blades.SPEED:g} rad/s: the same call before and after another (hub radius 1 m, 1 rad/s): "
-        f"{first.frequencies.tolist()}, then {again.frequencies.tolist()}",
+        f"{first.frequencies.tolist()}, then {second.frequencies.tolist()}",
     )
 
 
@@ -112,13 +117,13 @@ def shapes(code: BladeAdapter) -> None:
     shape = ask(code, BEAM, blades.SPEED, 1).shapes[0]
     at = f"beam at {blades.SPEED:g} rad/s, mode 1"
     require(np.abs(shape[0]).max() <= 1e-6 * np.abs(shape).max(), f"{at}: the root moves: {shape[0].tolist()}")
-    moved = np.abs(shape[:, 1:3]).max(axis=1)
-    wrong = np.abs(moved / moved[-1] - blades.cantilever_shape()).max()
+    deflection = np.abs(shape[:, 1:3]).max(axis=1)
+    deviation = np.abs(deflection / deflection[-1] - blades.cantilever_shape()).max()
     require(
-        wrong < 0.02,
-        f"{at}: the shape differs from the cantilever's by up to {wrong:.3f} of the tip's motion: check stations and scale",
+        deviation < 0.02,
+        f"{at}: the shape differs from the cantilever's by up to {deviation:.3f} of the tip's motion: check stations and scale",
     )
-    stray = np.abs(shape[:, [0, 3]]).max() / moved[-1]
+    stray = np.abs(shape[:, [0, 3]]).max() / deflection[-1]
     require(stray < 0.05, f"{at}: stretch or torsion is {stray:.3f} of the bending: check the order of the columns")
 
 
@@ -143,14 +148,14 @@ def units(code: BladeAdapter) -> None:
     """Lengths in feet, masses in pounds, times in minutes: the same to the declared digits of the code."""
     length, mass, rate = 1 / 0.3048, 1 / 0.45359237, 60.0
     power = np.add.outer([0, 0, 0, 1, 1, 1], [0, 0, 0, 1, 1, 1])
-    other = replace(
+    scaled = replace(
         BEAM,
         stations=BEAM.stations * length,
         curve=BEAM.curve * length,
         stiffness=BEAM.stiffness * mass * length ** (1.0 + power) * rate**2,
         mass=BEAM.mass * mass * length ** (power - 1.0),
     )
-    in_si, in_other_units = ask(code, BEAM, blades.SPEED, 0), ask(code, other, blades.SPEED * rate, 0)
+    in_si, in_other_units = ask(code, BEAM, blades.SPEED, 0), ask(code, scaled, blades.SPEED * rate, 0)
     require_close(
         in_other_units.frequencies / rate,
         in_si.frequencies,
@@ -165,8 +170,8 @@ def quarter_pitch(code: BladeAdapter) -> None:
     at = f"plank pitched by 90° at {blades.SPEED:g} rad/s"
     require_close(pitched.frequencies, plain.frequencies, f"{at}, against exchanged planes", same(code))
     for axis in (1, 2):
-        alike = along(pitched, axis) == along(plain, axis)
-        require(alike, f"{at}: the lowest mode along {'xyz'[axis]} is not that of a plank with exchanged planes")
+        same_axis = along(pitched, axis) == along(plain, axis)
+        require(same_axis, f"{at}: the lowest mode along {'xyz'[axis]} is not that of a plank with exchanged planes")
 
 
 def pitch_sense(code: BladeAdapter) -> None:
@@ -237,9 +242,9 @@ def torsion(code: BladeAdapter) -> None:
     first = int(turns[0]) + 1
     require_close(limit[turns[0]], exact, "soft shaft at 0 rad/s, lowest torsional mode", TOLERANCE, first)
     shape = fine.shapes[turns[0], :, 3]
-    wrong = np.abs(shape / shape[-1] - np.sin(np.pi / 2 * STATIONS)).max()
+    deviation = np.abs(shape / shape[-1] - np.sin(np.pi / 2 * STATIONS)).max()
     at = f"soft shaft at 0 rad/s, mode {first}"
-    require(wrong < 0.01, f"{at}: the rotation differs from a quarter sine by {wrong:.3f} of the tip's")
+    require(deviation < 0.01, f"{at}: the rotation differs from a quarter sine by {deviation:.3f} of the tip's")
 
 
 def tip_mass_weighs(code: BladeAdapter) -> None:

@@ -29,21 +29,23 @@ def _stubby(effects: Effects) -> Array:
 def _with_and_without(name: str, effects: Effects) -> tuple[Array, Array]:
     """Core's frequencies of the blades with and without a property."""
     (prop,) = (p for p in PROPERTIES if p.name == name)
-    having, lacking = (solve.mesh_modes(b, prop.omega, 30, 4, effects=effects) for b in (prop.having, prop.lacking))
-    return having.frequencies, lacking.frequencies
+    with_property, without_property = (
+        solve.mesh_modes(b, prop.omega, 30, 4, effects=effects) for b in (prop.having, prop.lacking)
+    )
+    return with_property.frequencies, without_property.frequencies
 
 
-def _far(values: Array, other: Array) -> float:
-    return float(_differences(values, other).max())
+def _far(values: Array, reference: Array) -> float:
+    return float(_differences(values, reference).max())
 
 
-def _differences(values: Array, other: Array) -> Array:
-    return np.abs(np.log(values[: len(other)] / other[: len(values)]))
+def _differences(values: Array, reference: Array) -> Array:
+    return np.abs(np.log(values[: len(reference)] / reference[: len(values)]))
 
 
-def _mode(values: Array, other: Array) -> int:
+def _mode(values: Array, reference: Array) -> int:
     """Number of the mode that differs most."""
-    return int(_differences(values, other).argmax()) + 1
+    return int(_differences(values, reference).argmax()) + 1
 
 
 def effects(code: BladeAdapter) -> None:
@@ -53,35 +55,35 @@ def effects(code: BladeAdapter) -> None:
     except CodeError as error:
         raise NotForItError(str(error)) from error
     stubby = _stubby(code.effects)
-    near = _far(frequencies, stubby)
+    difference = _far(frequencies, stubby)
     for name in (f.name for f in fields(Effects)):
-        kept = getattr(code.effects, name)
+        is_kept = getattr(code.effects, name)
         try:
-            change = _far(_stubby(replace(code.effects, **{name: not kept})), stubby)
+            change = _far(_stubby(replace(code.effects, **{name: not is_kept})), stubby)
         except UnstableError:  # for instance without geometric stiffness: the effect cannot be checked
             continue
         if bracket > DROPPED * change:
             raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {name}")
         require(
-            near <= DROPPED * change,
-            f"effects.{name} = {kept}: {blades.STUBBY.name} at {blades.FAST:g} rad/s, mode {_mode(frequencies, stubby)}: "
-            f"differs by {near:.2%} from Southwell's own solver with these effects; {name} changes the frequencies by up to "
-            f"{change:.2%}",
+            difference <= DROPPED * change,
+            f"effects.{name} = {is_kept}: {blades.STUBBY.name} at {blades.FAST:g} rad/s, mode {_mode(frequencies, stubby)}: "
+            f"differs by {difference:.2%} from Southwell's own solver with these effects; {name} changes the frequencies by "
+            f"up to {change:.2%}",
         )
 
 
 def keeps(prop: Property, code: BladeAdapter) -> None:
     """A property is not silently dropped; checked with two coarse levels."""
     frequencies, _, bracket = limit_of(code, prop.having, prop.omega)
-    having, lacking = _with_and_without(prop.name, code.effects)
-    change = _far(having, lacking)
+    with_property, without_property = _with_and_without(prop.name, code.effects)
+    change = _far(with_property, without_property)
     if change < VISIBLE:
         raise NotForItError(f"no effect without {', '.join(code.effects.lacks())}")
     if bracket > DROPPED * change:
         raise NotForItError(f"its uncertainty, {bracket:.1%}, is too large to show {prop.name}")
-    near, far = _far(frequencies, having), _far(frequencies, lacking)
+    difference, difference_without = _far(frequencies, with_property), _far(frequencies, without_property)
     require(
-        near <= DROPPED * change,
-        f"{prop.name}: at {prop.omega:g} rad/s, mode {_mode(frequencies, having)}: differs by {near:.2%} from the blade "
-        f"with it, by {far:.2%} from the blade without it",
+        difference <= DROPPED * change,
+        f"{prop.name}: at {prop.omega:g} rad/s, mode {_mode(frequencies, with_property)}: differs by {difference:.2%} from "
+        f"the blade with it, by {difference_without:.2%} from the blade without it",
     )

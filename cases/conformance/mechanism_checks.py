@@ -38,9 +38,9 @@ def _are(modes: MechanismModes, expected: Any, label: str) -> None:
     require(len(modes.values) == len(exact), message)
     unmatched = [complex(v.real, abs(v.imag)) for v in modes.values]
     for value in exact:
-        near = min(unmatched, key=lambda v: abs(v - value))
-        require(abs(near - value) <= TOLERANCE * np.abs(exact).max(), message)
-        unmatched.remove(near)
+        nearest = min(unmatched, key=lambda v: abs(v - value))
+        require(abs(nearest - value) <= TOLERANCE * np.abs(exact).max(), message)
+        unmatched.remove(nearest)
 
 
 def _list(values: Array) -> str:
@@ -85,23 +85,25 @@ def refuses(code: MechanismAdapter) -> None:
     """``unsupported_mechanism`` and ``solve_mechanism`` agree."""
     base = pendulum()
     bushing = mb.Beam("ground", "bob", mb.bushing(np.eye(4), np.eye(6)))
-    asked = {
+    mechanisms = {
         "a bushing": replace(base, beams=(bushing,)),
         "an acceleration": replace(base, motions=(mb.Motion("hinge.rz", 0.0, 0.0, 1.0),)),
         "a loop with a spring on every joint": _parallelogram(springs=True),
     }
     declined = False
-    for what, mechanism in asked.items():
+    for description, mechanism in mechanisms.items():
         reason = code.unsupported_mechanism(mechanism)
         if reason is None:
             continue
         declined = True
-        require(reason.strip() and "\n" not in reason, f"{what}: unsupported_mechanism: {reason!r}: not one line")
+        require(
+            reason.strip() and "\n" not in reason, f"{description}: unsupported_mechanism: {reason!r}: not one line"
+        )
         try:
             code.solve_mechanism(mechanism, {})
         except CodeError:
             continue
-        raise BrokenError(f"{what}: unsupported_mechanism returns {reason!r}, but solve_mechanism answers")
+        raise BrokenError(f"{description}: unsupported_mechanism returns {reason!r}, but solve_mechanism answers")
     if not declined:
         raise NotForItError("the code accepts all these mechanisms")
 
@@ -139,9 +141,9 @@ def flaps(code: MechanismAdapter) -> None:
 
 def gyrates(code: MechanismAdapter) -> None:
     """A spinning disc on two gimbals with springs: I λ² ± H λ + k coupled, eigenvalues ±i (√(H² + 4 I k) ± H)/(2 I)."""
-    across, polar, k, spin = 0.4, 0.5, 30.0, 20.0
+    transverse, polar, k, spin = 0.4, 0.5, 30.0, 20.0
     gimbals = mb.Mechanism(
-        (mb.Body("ring"), mb.Body("fork"), mb.Body("disc", mb.inertia(1.0, (across, across, polar)))),
+        (mb.Body("ring"), mb.Body("fork"), mb.Body("disc", mb.inertia(1.0, (transverse, transverse, polar)))),
         (
             mb.Joint("outer", "revolute", "ground", "ring", mb.at(axis="x"), mb.at(axis="x")),
             mb.Joint("inner", "revolute", "ring", "fork", mb.at(axis="y"), mb.at(axis="y")),
@@ -151,19 +153,19 @@ def gyrates(code: MechanismAdapter) -> None:
         (mb.CoordinateSpring("outer.rz", k), mb.CoordinateSpring("inner.rz", k)),
     )
     H = polar * spin
-    root = np.sqrt(H**2 + 4 * across * k)
-    _are(_ask(code, gimbals), [0.5j * (root - H) / across, 0.5j * (root + H) / across], "disc on gimbals")
+    root = np.sqrt(H**2 + 4 * transverse * k)
+    _are(_ask(code, gimbals), [0.5j * (root - H) / transverse, 0.5j * (root + H) / transverse], "disc on gimbals")
 
 
 def stretched(code: MechanismAdapter) -> None:
     """A mass on a rail across a stretched spring between points: √(T/(m l)) by its tension alone, and damped along it."""
-    k, free, far = 90.0, 0.4, 1.0
+    k, free, position = 90.0, 0.4, 1.0
     rail = mb.Mechanism(
         (mb.Body("mass", mb.inertia(MASS, 0.1)),),
         (mb.Joint("rail", "prismatic", "ground", "mass"),),
-        springs=(mb.Spring("ground", "mass", np.array([far, 0.0, 0.0]), np.zeros(3), k, 5.0, free),),
+        springs=(mb.Spring("ground", "mass", np.array([position, 0.0, 0.0]), np.zeros(3), k, 5.0, free),),
     )
-    _are(_ask(code, rail), [1j * np.sqrt(k * (far - free) / far / MASS)], "mass across a stretched spring")
+    _are(_ask(code, rail), [1j * np.sqrt(k * (position - free) / position / MASS)], "mass across a stretched spring")
 
 
 def branches(code: MechanismAdapter) -> None:
@@ -192,15 +194,15 @@ def branches(code: MechanismAdapter) -> None:
 
 def _parallelogram(springs: bool = False) -> mb.Mechanism:
     """A horizontal bar on two massless cranks: three redundant constraints in space."""
-    across, down = mb.at(1.0), mb.at(0.0, -LENGTH, 0.0)
+    crossbar, vertical = mb.at(1.0), mb.at(0.0, -LENGTH, 0.0)
     names = ("A", "B", "C", "D")
     return mb.Mechanism(
         (mb.Body("one"), mb.Body("two"), mb.Body("bar", mb.inertia(MASS, (0.0, 0.3, 0.3), (0.4, -0.1, 0.2)))),
         (
             mb.Joint("A", "revolute", "ground", "one"),
-            mb.Joint("B", "revolute", "ground", "two", across),
-            mb.Joint("C", "revolute", "one", "bar", down),
-            mb.Joint("D", "revolute", "two", "bar", down, across, cut=True),
+            mb.Joint("B", "revolute", "ground", "two", crossbar),
+            mb.Joint("C", "revolute", "one", "bar", vertical),
+            mb.Joint("D", "revolute", "two", "bar", vertical, crossbar, cut=True),
         ),
         coordinate_springs=tuple(mb.CoordinateSpring(f"{j}.rz", 1.0) for j in names) if springs else (),
         gravity=DOWN,
@@ -230,18 +232,19 @@ def curves(code: MechanismAdapter) -> None:
 
 def reversed_joint(code: MechanismAdapter) -> None:
     """A joint from child to parent and a different order of bodies: the coordinate changes sign, λ is the same."""
-    ways = []
+    answers = []
     for ends in (("ground", "bob"), ("bob", "ground")):
         joint = mb.Joint("hinge", "revolute", *ends)
         spring = mb.CoordinateSpring("hinge.rz", 5.0, 1.0, 0.2 if ends[0] == "ground" else -0.2)
-        ways.append(_ask(code, replace(pendulum(), joints=(joint,), coordinate_springs=(spring,))))
+        answers.append(_ask(code, replace(pendulum(), joints=(joint,), coordinate_springs=(spring,))))
     _are(
-        ways[1],
-        [complex(v.real, abs(v.imag)) for v in ways[0].values],
+        answers[1],
+        [complex(v.real, abs(v.imag)) for v in answers[0].values],
         "pendulum, its hinge given from child to parent",
     )
     require(
-        abs(ways[0].steady[0] + ways[1].steady[0]) < 1e-9, "hinge given from child to parent: its angle is not reversed"
+        abs(answers[0].steady[0] + answers[1].steady[0]) < 1e-9,
+        "hinge given from child to parent: its angle is not reversed",
     )
 
 
@@ -249,9 +252,9 @@ def repeats(code: MechanismAdapter) -> None:
     """No state remains from another call."""
     first = _ask(code, hinged("flap"))
     _ask(code, hinged("lag"))
-    again = _ask(code, hinged("flap"))
-    same = np.array_equal(first.values, again.values) and np.array_equal(first.shapes, again.shapes)
-    require(same, f"the same call before and after another: {_list(first.values)}, then {_list(again.values)}")
+    second = _ask(code, hinged("flap"))
+    is_equal = np.array_equal(first.values, second.values) and np.array_equal(first.shapes, second.shapes)
+    require(is_equal, f"the same call before and after another: {_list(first.values)}, then {_list(second.values)}")
 
 
 def periodic(code: MechanismAdapter) -> None:
@@ -270,13 +273,13 @@ def periodic(code: MechanismAdapter) -> None:
 
 def falls(code: MechanismAdapter) -> None:
     """An unsupported mass under gravity has no steady state."""
-    loose = mb.Mechanism(
+    mechanism = mb.Mechanism(
         (mb.Body("mass", mb.inertia(MASS, 0.1)),),
         (mb.Joint("rail", "prismatic", "ground", "mass", mb.at(axis="y"), mb.at(axis="y")),),
         gravity=DOWN,
     )
     try:
-        answer = code.solve_mechanism(loose, {})
+        answer = code.solve_mechanism(mechanism, {})
     except CodeError:
         return
     raise BrokenError(

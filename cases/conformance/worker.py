@@ -35,24 +35,24 @@ def outcomes(name: str, checks: Sequence[Check] = CHECKS, limits: Limits = LIMIT
     outcomes: list[Outcome] = []
     where = registry.address(name)
     while len(outcomes) < len(checks):
-        asked = [EVERY.index(check) for check in checks[len(outcomes) :]]
-        request = json.dumps({**where, "checks": asked}).encode()
-        lines, ended = converse(__name__, request, len(asked), limits)
+        pending = [EVERY.index(check) for check in checks[len(outcomes) :]]
+        request = json.dumps({**where, "checks": pending}).encode()
+        lines, failure = converse(__name__, request, len(pending), limits)
         for number, line in enumerate(lines):
             try:
                 data = boundary.reply(line, number)
-                judged = boundary.failure(data) or boundary.convert(data, _Judged)
+                judgement = boundary.failure(data) or boundary.convert(data, _Judged)
             except NonsenseError as error:
-                ended = Failure("nonsense", one_line(error))
+                failure = Failure("nonsense", one_line(error))
                 break
             verdict, reason = (
-                ("fail", judged.reason) if isinstance(judged, Failure) else (judged.verdict, judged.reason)
+                ("fail", judgement.reason) if isinstance(judgement, Failure) else (judgement.verdict, judgement.reason)
             )
             outcomes.append(Outcome(checks[len(outcomes)], verdict, one_line(reason)))
         else:
-            if len(lines) == len(asked):
+            if len(lines) == len(pending):
                 break
-        outcomes.append(Outcome(checks[len(outcomes)], "fail", ended.reason))
+        outcomes.append(Outcome(checks[len(outcomes)], "fail", failure.reason))
     return outcomes
 
 

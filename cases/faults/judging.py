@@ -22,7 +22,7 @@ BMODES = Trial("windpact-1.5/bmodes", (6.283185307179586,), ())
 def by_number(original: Any) -> Any:
     """Modes are paired by their number."""
 
-    def faulty(reference: Spectrum, answer: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
+    def faulty(reference: Spectrum, answer: Spectrum, indices: Sequence[int], min_mac: float = 0.8) -> list[Pair]:
         return [Pair(i if i < len(answer.values) else None, 1.0) for i, _ in enumerate(indices)]
 
     return faulty
@@ -41,7 +41,7 @@ def next_one(original: Any) -> Any:
 def anything_goes(original: Any) -> Any:
     """Any MAC is accepted."""
 
-    def faulty(core: Spectrum, answer: Spectrum, indices: Sequence[int], least: float = 0.0) -> list[Pair]:
+    def faulty(core: Spectrum, answer: Spectrum, indices: Sequence[int], min_mac: float = 0.0) -> list[Pair]:
         return original(core, answer, indices, 0.0)
 
     return faulty

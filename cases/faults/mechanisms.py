@@ -60,7 +60,7 @@ def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
 
 
 def _by_number(original: Any) -> Any:
-    def faulty(reference: Spectrum, spectrum: Spectrum, indices: Sequence[int], least: float = 0.8) -> list[Pair]:
+    def faulty(reference: Spectrum, spectrum: Spectrum, indices: Sequence[int], min_mac: float = 0.8) -> list[Pair]:
         return [Pair(k if k < len(spectrum.values) else None, 1.0) for k in indices]
 
     return faulty

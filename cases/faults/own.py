@@ -48,9 +48,11 @@ class _Witnessed(BladeSubject):
 
     paper: bool = False
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """See ``Subject``."""
-        columns = super().columns(codes, limits, added)
+        columns = super().columns(codes, limits, user_results)
         if self.paper:
             head = next(column.head for column in columns if column.head.code == PAPER)
             work = partial(papers_equations, head, self.blade, elements=ELEMENTS)

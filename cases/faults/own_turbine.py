@@ -39,9 +39,11 @@ NO_WITNESS = "an independent code that agrees on this turbine"
 class _Witnessed(TurbineSubject):
     """A turbine with the columns of independent codes only."""
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """See ``Subject``."""
-        columns = super().columns(codes, limits, added)
+        columns = super().columns(codes, limits, user_results)
         return [column for column in columns if column.head.role == "code" and column.head.shares == "nothing"]
 
 

@@ -112,9 +112,9 @@ def mode_fields(reference: Reference, i: int, quantity: str = "frequency") -> di
     return {"mode": i + 1, "family": family, "ordinal": int(ordinal), "full": full, "quantity": quantity}
 
 
-def unless_ambiguous(judged: Judgement, partner: Pair) -> Judgement:
+def unless_ambiguous(judgement: Judgement, partner: Pair) -> Judgement:
     """No agreement if the code has another mode of nearly the same shape at a different frequency."""
-    return ("inconclusive", "") if partner.ambiguous and judged[0] in (*AGREES, "known difference") else judged
+    return ("inconclusive", "") if partner.ambiguous and judgement[0] in (*AGREES, "known difference") else judgement
 
 
 def join(*parts: str) -> str:

@@ -57,8 +57,8 @@ def follow(answers: Sequence[Spectrum], compared: Compared, order: int, bracket:
 
 def _follow(answers: Sequence[Spectrum], partners: Sequence[Pair], order: int, bracket: bool) -> RefinedMode:
     last = partners[-1] if partners else Pair(None, 0.0, "no partner: the code returned no modes")
-    paired = [(m, p.mode) for m, p in zip(answers, partners, strict=True) if p.mode is not None]
-    history = tuple((m.elements, float(m.frequencies[k])) for m, k in paired)
+    modes = [(m, p.mode) for m, p in zip(answers, partners, strict=True) if p.mode is not None]
+    history = tuple((m.elements, float(m.frequencies[k])) for m, k in modes)
     if last.mode is None:
         return RefinedMode(None, last, history)
     own = float(answers[-1].uncertainty[last.mode]) if len(answers[-1].uncertainty) else None

@@ -69,12 +69,12 @@ def weights(blade: Blade) -> Array:
     mass = np.concatenate([weight.reshape(-1, 1, 1) * mass_at(blade, s[:-1]), blade.tip_mass[None]])[:, :4, :4]
     angle = twist_at(blade, s) + blade.pitch
     cos, sin = np.cos(angle), np.sin(angle)
-    turn = np.zeros((len(s), 4, 4))  # section axes → blade axes, for (x, y, z, rotation about x)
-    turn[:, 0, 0] = turn[:, 3, 3] = 1.0
-    turn[:, 1, 1] = turn[:, 2, 2] = cos
-    turn[:, 1, 2], turn[:, 2, 1] = -sin, sin
+    rotation = np.zeros((len(s), 4, 4))  # section axes → blade axes, for (x, y, z, rotation about x)
+    rotation[:, 0, 0] = rotation[:, 3, 3] = 1.0
+    rotation[:, 1, 1] = rotation[:, 2, 2] = cos
+    rotation[:, 1, 2], rotation[:, 2, 1] = -sin, sin
     shares = np.maximum(0.0, 1.0 - np.abs(s / blade.length - STATIONS[:, None]) / STATIONS[1])
-    return np.einsum("ns,sij->nij", shares, turn @ mass @ turn.swapaxes(1, 2))
+    return np.einsum("ns,sij->nij", shares, rotation @ mass @ rotation.swapaxes(1, 2))
 
 
 def mac(a: Complex, b: Complex, weight: Array) -> Array:
@@ -118,61 +118,70 @@ def aligned(modes: Modes, weight: Array, gap: float = DOUBLE) -> Modes:
     for group in groups(modes.frequencies, gap):
         if len(group) > 1:
             flap = np.einsum("ms,s,ks->mk", shapes[group, :, 2].conj(), weight[:, 2, 2], shapes[group, :, 2])
-            whole = _products(shapes[group], _momenta(shapes[group], weight))
-            if np.linalg.cond(whole) < DEPENDENT:
-                shapes[group] = np.einsum("mk,msi->ksi", eigh(flap, whole)[1], shapes[group])
+            mass = _products(shapes[group], _momenta(shapes[group], weight))
+            if np.linalg.cond(mass) < DEPENDENT:
+                shapes[group] = np.einsum("mk,msi->ksi", eigh(flap, mass)[1], shapes[group])
     return replace(modes, shapes=shapes)
 
 
-def pair(reference: Spectrum, other: Spectrum, indices: Sequence[int], least: float = LEAST_MAC) -> list[Pair]:
-    """Partners in ``other`` of the reference's modes ``indices``, by the shapes over their common degrees of freedom.
+def pair(reference: Spectrum, answer: Spectrum, indices: Sequence[int], min_mac: float = LEAST_MAC) -> list[Pair]:
+    """Partners in ``answer`` of the reference's modes ``indices``, by the shapes over their common degrees of freedom.
 
     One assignment over all modes of both maximises the sum of MACs. Modes of the same eigenvalue are compared as a subspace and
-    matched in order of frequency; so are modes of nearly the same frequency if the MAC of one of them is below ``least``, the
+    matched in order of frequency; so are modes of nearly the same frequency if the MAC of one of them is below ``min_mac``, the
     MAC below which two shapes are not partners.
     """
-    ours, theirs, weight = on_common(reference, other)
-    table = mac(ours, theirs, weight)
+    reference_shapes, answer_shapes, weight = on_common(reference, answer)
+    table = mac(reference_shapes, answer_shapes, weight)
     rows, columns = linear_sum_assignment(-table)
     partner = dict(zip(rows.tolist(), columns.tolist(), strict=True))
-    own = mac(ours, ours, weight)
-    alike = np.zeros_like(table)  # MAC of each mode with the reference's mode whose partner a column is
-    alike[:, columns] = own[:, rows]
+    own = mac(reference_shapes, reference_shapes, weight)
+    similarity = np.zeros_like(table)  # MAC of each mode with the reference's mode whose partner a column is
+    similarity[:, columns] = own[:, rows]
     frequencies, pairs = reference.frequencies, dict[int, Pair]()
     for group in groups(frequencies):
         values = reference.values[group]
-        same = float(np.abs(values - values[0]).max()) <= DOUBLE * frequencies[group[-1]]
-        if same or any(table[k, partner[k]] < least for k in group if k in partner):
-            pairs.update(_as_subspace(group, partner, ours, theirs, weight, least))
-    return [pairs.get(k) or _alone(table[k], alike[k], partner.get(k), other.frequencies, least) for k in indices]
+        is_multiple = float(np.abs(values - values[0]).max()) <= DOUBLE * frequencies[group[-1]]
+        if is_multiple or any(table[k, partner[k]] < min_mac for k in group if k in partner):
+            pairs.update(_as_subspace(group, partner, reference_shapes, answer_shapes, weight, min_mac))
+    return [
+        pairs.get(k) or _alone(table[k], similarity[k], partner.get(k), answer.frequencies, min_mac) for k in indices
+    ]
 
 
 def _as_subspace(
-    group: list[int], partner: dict[int, int], ours: Complex, theirs: Complex, weight: Array, least: float
+    group: list[int],
+    partner: dict[int, int],
+    reference_shapes: Complex,
+    answer_shapes: Complex,
+    weight: Array,
+    min_mac: float,
 ) -> dict[int, Pair]:
     if len(group) == 1 or not all(k in partner for k in group):
         return {}
-    others = sorted(partner[k] for k in group)
-    likeness = _subspace(ours[group], theirs[others], weight)
-    if likeness < least:
+    modes = sorted(partner[k] for k in group)
+    likeness = _subspace(reference_shapes[group], answer_shapes[modes], weight)
+    if likeness < min_mac:
         return {}
     note = f"compared as a subspace of {len(group)} close modes"
-    return {k: Pair(mode, likeness, note) for k, mode in zip(group, others, strict=True)}
+    return {k: Pair(mode, likeness, note) for k, mode in zip(group, modes, strict=True)}
 
 
-def _alone(row: Array, alike: Array, mode: int | None, frequencies: Array, least: float) -> Pair:
+def _alone(row: Array, similarity: Array, mode: int | None, frequencies: Array, min_mac: float) -> Pair:
     if not len(row):
         return Pair(None, 0.0, "no partner: the code returned no modes")
-    if mode is None or row[mode] < least:
+    if mode is None or row[mode] < min_mac:
         best = int(row.argmax())
         nearest = f"its most similar mode, at {frequencies[best]:.6g} rad/s, has MAC {row[best]:.2f}"
         return Pair(None, float(row[best]), f"no partner: {nearest}")
-    rivals = np.delete(np.where(row <= alike + ALIKE, 0.0, row), mode)
+    rivals = np.delete(np.where(row <= similarity + ALIKE, 0.0, row), mode)
     if rivals.max(initial=0.0) < RIVAL_MAC:
         return Pair(mode, float(row[mode]))
     second = float(np.delete(frequencies, mode)[rivals.argmax()])
-    apart = abs(second - frequencies[mode]) > DEGENERATE * second
-    return Pair(mode, float(row[mode]), f"ambiguous: MAC {rivals.max():.2f} with {second:.6g} rad/s too", bool(apart))
+    is_distinct = abs(second - frequencies[mode]) > DEGENERATE * second
+    return Pair(
+        mode, float(row[mode]), f"ambiguous: MAC {rivals.max():.2f} with {second:.6g} rad/s too", bool(is_distinct)
+    )
 
 
 def _subspace(a: Complex, b: Complex, weight: Array) -> float:

@@ -26,8 +26,8 @@ class Coarse:
     limit: float
 
 
-def explained_by_discretisation(cell: Cell, coarse: Coarse | None, what: str) -> Cell:
-    """The cell of a printed number whose author's discretisation, named ``what``, is known.
+def explained_by_discretisation(cell: Cell, coarse: Coarse | None, name: str) -> Cell:
+    """The cell of a printed number whose author's discretisation, named ``name``, is known.
 
     If the number is not within the target of the converged answer, its difference is known if core with that
     discretisation agrees with it and the refinements of that discretisation lead to the converged answer.
@@ -42,19 +42,19 @@ def explained_by_discretisation(cell: Cell, coarse: Coarse | None, what: str) ->
             coarse.frequency / cell.reference,
         )
     )
-    verdict, reason = discretised(cell.difference, cell.uncertainty, cell.target, remainder, limit, what, size)
+    verdict, reason = discretised(cell.difference, cell.uncertainty, cell.target, remainder, limit, name, size)
     if verdict == cell.verdict and verdict != "fail":
         return cell
     return replace(cell, verdict=verdict, reason=reason)
 
 
 def source_discretisation_cells(
-    head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, what: str
+    head: Head, omega: float, reference: Reference, refinements: Refinements, order: int, name: str
 ) -> Rows:
     """Cells of core with a given discretisation: its coarsest answer, explained by its refinements.
 
     Args:
-        what: name of the discretisation, for the reason.
+        name: of the discretisation, for the reason.
         refinements: core's answers: the given discretisation first, then finer ones of the same kind.
     """
     if not refinements.answers:
@@ -67,10 +67,10 @@ def source_discretisation_cells(
         base, difference = reference.core.modes[i].estimate, cell.difference
         if difference is not None and base is not None:
             cell = replace(cell, uncertainty=base.uncertainty)
-            verdict, reason = discretised(difference, base.uncertainty, head.target, 0.0, limit.difference, what)
+            verdict, reason = discretised(difference, base.uncertainty, head.target, 0.0, limit.difference, name)
             if verdict != "fail":
-                lacking, why = known_effects(reference, i, head.target)
-                verdict, reason = verdict if lacking in AGREES else lacking, join(reason, why)
+                known_verdict, why = known_effects(reference, i, head.target)
+                verdict, reason = verdict if known_verdict in AGREES else known_verdict, join(reason, why)
             cell = replace(cell, verdict=verdict, reason=reason)
         cells.append(cell)
     return cells, levels

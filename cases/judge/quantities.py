@@ -33,7 +33,7 @@ def difference(name: str, value: float, reference: float) -> float:
     return value / reference - 1.0 if scale is None else (value - reference) / scale
 
 
-def reference(name: str, value: float, away: float) -> float:
-    """The reference from which ``value`` differs by ``away``."""
+def reference(name: str, value: float, difference: float) -> float:
+    """The reference from which ``value`` differs by ``difference``."""
     scale = QUANTITIES[name].scale
-    return value / (1.0 + away) if scale is None else value - away * scale
+    return value / (1.0 + difference) if scale is None else value - difference * scale

@@ -25,7 +25,7 @@ def refined(
     if not refinements.answers or (refinements.failure and refinements.failure.kind == "nonsense"):
         return [failed(head, omega, refinements.failure)], []
     refined_modes = follow(refinements.answers, reference.core.compared, order, bracket)
-    late = f"finer: {refinements.failure.reason}" if refinements.failure else ""
+    note = f"finer: {refinements.failure.reason}" if refinements.failure else ""
     doubt = (
         _extra(reference, refinements.answers[-1], refined_modes)
         or _damped(refinements.answers[-1])
@@ -37,7 +37,7 @@ def refined(
         if reason := _missing_motion(reference, i, head.motions):
             cell = replace(cell, verdict="not applicable", reason=reason)
         elif mode.estimate:
-            cell = judged(cell, reference, i, mode, late, order)
+            cell = judged(cell, reference, i, mode, note, order)
         if doubt and cell.verdict in (*AGREES, "known difference"):
             cell = replace(cell, verdict="inconclusive", reason=join(doubt, cell.reason))
         cells.append(cell)
@@ -50,9 +50,9 @@ def refined(
 def _extra(reference: Reference, answer: Spectrum, refined_modes: Sequence[RefinedMode]) -> str:
     """The modes of an answer below the highest compared one that are none of core's; empty if there are none."""
     core = reference.core.spectrum
-    paired = {partner.mode for partner in pair(core, answer, range(len(core.values)))}
+    partners = {partner.mode for partner in pair(core, answer, range(len(core.values)))}
     top = max((answer.frequencies[m.partner.mode] for m in refined_modes if m.partner.mode is not None), default=0.0)
-    extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in paired and f < top]
+    extra = [f"{f:.6g}" for k, f in enumerate(answer.frequencies) if k not in partners and f < top]
     return (
         f"modes at {', '.join(extra)} rad/s do not match any mode of Southwell's own solver: they are spurious, or it "
         "missed them"
@@ -94,7 +94,7 @@ def _missing_motion(reference: Reference, i: int, motions: Collection[str]) -> s
     return "" if motion in motions else f"this code declares that its modes have no {motion} motion"
 
 
-def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, late: str, declared_order: float = 0.0) -> Cell:
+def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, note: str, declared_order: float = 0.0) -> Cell:
     """The cell with numbers and verdict; a pass states scatter, and an order of convergence below the declared one."""
     base, best = reference.core.modes[i].estimate, mode.estimate
     if base is None or best is None:
@@ -108,9 +108,9 @@ def judged(cell: Cell, reference: Reference, i: int, mode: RefinedMode, late: st
         verdict, reason = judge(difference, uncertainty, cell.target)
     if verdict in AGREES:
         verdict, reason = unless_ambiguous(known_effects(reference, i, cell.target), mode.partner)
-        reason = join(reason, best.note if best.order is None or best.order < declared_order else "", late)
+        reason = join(reason, best.note if best.order is None or best.order < declared_order else "", note)
     else:
-        reason = join(reason, best.note, base.note and f"Southwell's own solver: {base.note}", late)
+        reason = join(reason, best.note, base.note and f"Southwell's own solver: {base.note}", note)
     return replace(
         cell,
         value=best.value,

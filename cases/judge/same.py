@@ -18,17 +18,21 @@ from .verdict import judge
 Array = NDArray[np.float64]
 
 
-def rounding(core_answer: Answer, again: Sequence[Answer]) -> Array:
+def rounding(core_answer: Answer, scaled_answers: Sequence[Answer]) -> Array:
     """Relative uncertainty (m,) of the frequencies of ``core_answer`` due to rounding.
 
-    It is estimated from core's answers ``again`` to the same equations scaled by common factors, which differ only by
+    It is estimated from core's answers ``scaled_answers`` to the same equations scaled by common factors, which differ only by
     rounding. The largest change of any mode is used for all modes, as rounding in the steady state affects them
     together. The uncertainty that core reports is used if it is larger.
     """
-    solved = [answer for answer in (core_answer, *again) if not isinstance(answer, Failure)]
-    if isinstance(core_answer, Failure) or len(solved) <= len(again) or len({len(m.frequencies) for m in solved}) > 1:
+    answers = [answer for answer in (core_answer, *scaled_answers) if not isinstance(answer, Failure)]
+    if (
+        isinstance(core_answer, Failure)
+        or len(answers) <= len(scaled_answers)
+        or len({len(m.frequencies) for m in answers}) > 1
+    ):
         return np.zeros(0)
-    change = max(float(np.abs(answer.frequencies / core_answer.frequencies - 1.0).max()) for answer in solved)
+    change = max(float(np.abs(answer.frequencies / core_answer.frequencies - 1.0).max()) for answer in answers)
     rounding_of_core = np.full(len(core_answer.frequencies), max(ROUNDING, WARY * change))
     return np.maximum(rounding_of_core, core_answer.rounding) if len(core_answer.rounding) else rounding_of_core
 
@@ -66,16 +70,16 @@ def same_discretisation_cells(
     cells = []
     for i, base in enumerate(pair(core.spectrum, core_answer, core.indices)):
         (partner,) = pair(weighted, answer, [base.mode]) if base.mode is not None else (base,)
-        sure = _uncertainty(base.mode, partner.mode, answer, rounding_of_core)
+        uncertainty = _uncertainty(base.mode, partner.mode, answer, rounding_of_core)
         for quantity in reference.quantities:
             cell = row(head, omega, i, reference, answer, partner, quantity)
             if base.mode is not None and partner.mode is not None:
                 value, expected = (
                     float(s.of(quantity)[k]) for s, k in ((answer, partner.mode), (core_answer, base.mode))
                 )
-                away = difference(quantity, value, expected)
-                verdict, reason = unless_ambiguous(judge(away, sure, head.target), partner)
-                cell = replace(cell, value=value, reference=expected, difference=away, uncertainty=sure)
+                deviation = difference(quantity, value, expected)
+                verdict, reason = unless_ambiguous(judge(deviation, uncertainty, head.target), partner)
+                cell = replace(cell, value=value, reference=expected, difference=deviation, uncertainty=uncertainty)
                 cell = replace(cell, verdict=verdict, reason=join(reason, partner.note))
             cells.append(cell)
     return cells, []

@@ -71,8 +71,8 @@ def of_blade(modes: Modes, weight: Array | None = None) -> Spectrum:
     """The spectrum of a blade's modes: λ = ω (−ζ + i √(1 − ζ²))."""
     ratio = modes.damping
     values = modes.frequencies * (-ratio + 1j * np.sqrt(1.0 - ratio**2))
-    stated = {"elements": modes.elements, "uncertainty": modes.uncertainty, "rounding": modes.rounding}
-    return Spectrum(values, modes.shapes, MOTIONS, weight, **stated)
+    accuracy = {"elements": modes.elements, "uncertainty": modes.uncertainty, "rounding": modes.rounding}
+    return Spectrum(values, modes.shapes, MOTIONS, weight, **accuracy)
 
 
 def of_mechanism(modes: MechanismModes) -> Spectrum:
@@ -90,7 +90,7 @@ def of_mechanisms(answers: Iterable[MechanismModes | Failure]) -> list[Answer]:
     return [answer if isinstance(answer, Failure) else of_mechanism(answer) for answer in answers]
 
 
-def on_common(reference: Spectrum, other: Spectrum) -> tuple[Complex, Complex, Array]:
+def on_common(reference: Spectrum, answer: Spectrum) -> tuple[Complex, Complex, Array]:
     """The shapes of both over the degrees of freedom that they share, and the weight of the reference over these.
 
     Raises:
@@ -98,15 +98,15 @@ def on_common(reference: Spectrum, other: Spectrum) -> tuple[Complex, Complex, A
     """
     if reference.weight is None:
         raise ValueError("a spectrum without a weight cannot be a reference")
-    if reference.names == other.names:
-        return reference.shapes, other.shapes, reference.weight
-    ours = [k for k, name in enumerate(reference.names) if name in other.names]
-    theirs = [other.names.index(reference.names[k]) for k in ours]
-    weight = reference.weight[:, ours][:, :, ours]
-    return reference.shapes[:, :, ours], other.shapes[:, :, theirs], weight
+    if reference.names == answer.names:
+        return reference.shapes, answer.shapes, reference.weight
+    reference_indices = [k for k, name in enumerate(reference.names) if name in answer.names]
+    answer_indices = [answer.names.index(reference.names[k]) for k in reference_indices]
+    weight = reference.weight[:, reference_indices][:, :, reference_indices]
+    return reference.shapes[:, :, reference_indices], answer.shapes[:, :, answer_indices], weight
 
 
-def fault(reference: Spectrum, other: Spectrum) -> str:
+def fault(reference: Spectrum, answer: Spectrum) -> str:
     """Why the modes of a complete reference have no definite partners in an answer; empty if they have.
 
     The answer must name enough degrees of freedom to tell the modes apart, and it must have no more modes than the reference
@@ -114,16 +114,18 @@ def fault(reference: Spectrum, other: Spectrum) -> str:
     """
     if not reference.complete:
         return ""
-    ours, _, _ = on_common(reference, other)
+    shapes_in_common, _, _ = on_common(reference, answer)
     count = len(reference.values)
-    rank, whole = (np.linalg.matrix_rank(shapes.reshape(count, -1)) for shapes in (ours, reference.shapes))
-    if rank < whole:
-        return f"coordinates {', '.join(other.names)}: these do not distinguish the {count} modes: name all"
+    rank, full_rank = (
+        np.linalg.matrix_rank(shapes.reshape(count, -1)) for shapes in (shapes_in_common, reference.shapes)
+    )
+    if rank < full_rank:
+        return f"coordinates {', '.join(answer.names)}: these do not distinguish the {count} modes: name all"
     highest = reference.frequencies.max(initial=0.0)
-    more = len(other.values) > count
-    if more and np.sum(other.frequencies <= highest * (1.0 + CLOSE)) > count:
+    has_more = len(answer.values) > count
+    if has_more and np.sum(answer.frequencies <= highest * (1.0 + CLOSE)) > count:
         return (
-            f"values: {len(other.values)} modes, and Southwell's own solver has {count}: give each conjugate "
+            f"values: {len(answer.values)} modes, and Southwell's own solver has {count}: give each conjugate "
             "pair once, and no spurious mode"
         )
     return ""

@@ -71,24 +71,24 @@ def from_refinement(elements: Sequence[int], frequencies: Sequence[float], order
         return Estimate(
             float(f[-1]), None, note=f"{len(f)} of 3 refinements were solved: the order of convergence is unknown"
         )
-    spread = float((f.max() - f.min()) / abs(f[-1]))
-    scattered = Estimate(float(f[-1]), _at_least(WARY * spread))
-    if spread <= NOISE:
+    range_ = float((f.max() - f.min()) / abs(f[-1]))
+    scattered = Estimate(float(f[-1]), _at_least(WARY * range_))
+    if range_ <= NOISE:
         return scattered
-    scattered = replace(scattered, note=f"refinements scatter by {spread:.1g} instead of converging with order {order}")
+    scattered = replace(scattered, note=f"refinements scatter by {range_:.1g} instead of converging with order {order}")
     listed = f"{f[0]:.9g}, {f[1]:.9g}, {f[2]:.9g} rad/s"
     if (f[1] - f[0]) * (f[2] - f[1]) <= 0:
-        return scattered if spread <= QUIET else Estimate(float(f[-1]), None, note=f"not monotone: {listed}")
+        return scattered if range_ <= QUIET else Estimate(float(f[-1]), None, note=f"not monotone: {listed}")
     observed = observed_order(n.tolist(), f.tolist())
     if observed <= 0:
-        return scattered if spread <= QUIET else Estimate(float(f[-1]), None, observed, f"not converging: {listed}")
+        return scattered if range_ <= QUIET else Estimate(float(f[-1]), None, observed, f"not converging: {listed}")
     firm = abs(observed - order) <= NEAR_THEORY * order
-    used = float(order) if firm else min(max(observed, 0.5), float(order))
-    before, value = (f[k] + (f[k] - f[k - 1]) / ((n[k] / n[k - 1]) ** used - 1.0) for k in (1, 2))
+    order_used = float(order) if firm else min(max(observed, 0.5), float(order))
+    previous, value = (f[k] + (f[k] - f[k - 1]) / ((n[k] / n[k - 1]) ** order_used - 1.0) for k in (1, 2))
     if firm:
-        change = abs(value - before) / (n[2] / n[1] - 1.0)
-        wrong = max(FIRM * change, CHANCE * abs(value - f[2]))
-        return Estimate(float(value), _at_least(wrong / abs(value)), observed)
+        change = abs(value - previous) / (n[2] / n[1] - 1.0)
+        error = max(FIRM * change, CHANCE * abs(value - f[2]))
+        return Estimate(float(value), _at_least(error / abs(value)), observed)
     note = f"observed order {observed:.2f} instead of {order}: safety factor {WARY:g}"
     return Estimate(float(value), _at_least(WARY * abs(value / f[2] - 1.0)), observed, note)
 
@@ -113,9 +113,9 @@ def observed_order(elements: Sequence[float], values: Sequence[float]) -> float:
     return high if excess(high) <= 0 else float(root_scalar(excess, bracket=(low, high)).root)
 
 
-def widened(estimate: Estimate, more: float) -> Estimate:
-    """The estimate with ``more``, an uncertainty that the solver reports (such as rounding), added; relative."""
-    return estimate if estimate.uncertainty is None else replace(estimate, uncertainty=estimate.uncertainty + more)
+def widened(estimate: Estimate, added: float) -> Estimate:
+    """The estimate with ``added``, an uncertainty that the solver reports (such as rounding), added; relative."""
+    return estimate if estimate.uncertainty is None else replace(estimate, uncertainty=estimate.uncertainty + added)
 
 
 def from_bracket(frequency: float, uncertainty: float) -> Estimate:

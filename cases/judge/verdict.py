@@ -86,10 +86,10 @@ def known_difference(shift: float | None, target: float, effects: Sequence[Effec
         e.name: "not comparable" if e.change is None else percent(e.change) for e in effects if not _small(e, shift)
     }
     causes = [f"no {name}: {change}" for name, change in changes.items()]
-    together = [f"together {percent(shift)}"] if len(causes) != 1 else []
+    total = [f"together {percent(shift)}"] if len(causes) != 1 else []
     return (
         "known difference",
-        f"{', '.join(causes + together)} (change of the answer of Southwell's own solver, which agrees without them)",
+        f"{', '.join(causes + total)} (change of the answer of Southwell's own solver, which agrees without them)",
     )
 
 
@@ -106,12 +106,12 @@ def bracketed(difference: float, uncertainty: float | None, target: float) -> Ju
     verdict, reason = judge(difference, uncertainty, target)
     if verdict in AGREES or uncertainty is None:
         return verdict, reason
-    away = -difference / (1.0 + difference)
-    bound = (
-        f"estimate with a stated bound of {unsigned(uncertainty)}; Southwell's own solver differs by {percent(away)},"
-    )
+    deviation = -difference / (1.0 + difference)
+    bound = f"estimate with a stated bound of {unsigned(uncertainty)}; Southwell's own solver differs by {percent(deviation)},"
     return (
-        ("estimate", f"{bound} within the bound") if abs(away) <= uncertainty else ("fail", f"{bound} beyond the bound")
+        ("estimate", f"{bound} within the bound")
+        if abs(deviation) <= uncertainty
+        else ("fail", f"{bound} beyond the bound")
     )
 
 
@@ -121,7 +121,7 @@ def discretised(
     target: float,
     remainder: float,
     limit: float | None,
-    what: str,
+    name: str,
     size: float | None = None,
 ) -> Judgement:
     """The verdict on an answer from a given discretisation.
@@ -135,7 +135,7 @@ def discretised(
         remainder: difference of the answer from core's with the same discretisation; 0 if it is core's answer.
         limit: difference between the limit of core's refinements of that discretisation and the reference; None if
             unknown.
-        what: name of the discretisation.
+        name: of the discretisation.
         size: its error: core's answer with it against the reference; ``difference`` if omitted.
     """
     verdict, reason = judge(difference, uncertainty, target)
@@ -143,10 +143,13 @@ def discretised(
         return verdict, reason
     if judge(remainder, uncertainty, target)[0] not in AGREES:
         return verdict, reason
-    error = f"discretisation error of {what}: {percent(difference if size is None else size)}"
+    error = f"discretisation error of {name}: {percent(difference if size is None else size)}"
     if abs(limit) + (uncertainty or 0.0) <= target:
-        rest = f", remainder {percent(remainder)}" if remainder else ""
-        return "known difference", f"{error}{rest}; its limit under refinement is {percent(limit)} from the reference"
+        remainder_text = f", remainder {percent(remainder)}" if remainder else ""
+        return (
+            "known difference",
+            f"{error}{remainder_text}; its limit under refinement is {percent(limit)} from the reference",
+        )
     return "fail", f"{error}, and its refinements do not converge to the reference ({percent(limit)})"
 
 

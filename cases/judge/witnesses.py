@@ -67,8 +67,8 @@ def witnesses(run: Run, case: str) -> list[Witness]:
     origins = {o.code: o for o in run.origins if o.case == case}
     columns: dict[str, list[Cell]] = {}
     for cell in run.cells:
-        asked = cell.difference is not None or cell.verdict in ("fail", "inconclusive")
-        if cell.case == case and asked and cell.shares and cell.role != "measured":
+        is_judged = cell.difference is not None or cell.verdict in ("fail", "inconclusive")
+        if cell.case == case and is_judged and cell.shares and cell.role != "measured":
             columns.setdefault(cell.code, []).append(cell)
     target = next((s.target for s in run.settings if s.case == case), None)
     return [_witness(code, cells, origins.get(code), target) for code, cells in columns.items()]
@@ -124,13 +124,13 @@ def _worst(standings: Iterable[Standing]) -> Standing:
 
 def groups(all_witnesses: Iterable[Witness]) -> list[tuple[Witness, ...]]:
     """Witnesses that agree and share nothing with core, grouped by common origin; each group counts once."""
-    counted = [w for w in all_witnesses if w.kind in INDEPENDENT and w.standing == "agrees"]
+    agreeing = [w for w in all_witnesses if w.kind in INDEPENDENT and w.standing == "agrees"]
     out: list[list[Witness]] = []
-    for witness in counted:
-        linked = [group for group in out if any(_linked(witness, other) for other in group)]
+    for witness in agreeing:
+        linked = [group for group in out if any(_linked(witness, member) for member in group)]
         out = [group for group in out if group not in linked]
-        out.append([*(other for group in linked for other in group), witness])
-    return [tuple(sorted(group, key=counted.index)) for group in out]
+        out.append([*(member for group in linked for member in group), witness])
+    return [tuple(sorted(group, key=agreeing.index)) for group in out]
 
 
 def _linked(a: Witness, b: Witness) -> bool:
@@ -153,8 +153,10 @@ class UnderConfirmed:
 
 def under_confirmed(run: Run) -> list[UnderConfirmed]:
     """Blades confirmed by fewer groups than required."""
-    counted = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
-    return [UnderConfirmed(s.case, confirmed_by, s.groups) for s, confirmed_by in counted if confirmed_by < s.groups]
+    group_counts = [(s, len(groups(witnesses(run, s.case)))) for s in run.settings if s.groups]
+    return [
+        UnderConfirmed(s.case, confirmed_by, s.groups) for s, confirmed_by in group_counts if confirmed_by < s.groups
+    ]
 
 
 def engines(group: Sequence[Witness]) -> str:

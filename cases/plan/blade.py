@@ -81,15 +81,19 @@ class BladeSubject:
         """See ``Subject``."""
         return setting(self.case, self.variant)
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """See ``Subject``."""
         compare = self.case.text.compare
-        return columns(self.case, self.variant, codes, limits) + user_columns.columns(self.variant, added, compare)
+        return columns(self.case, self.variant, codes, limits) + user_columns.columns(
+            self.variant, user_results, compare
+        )
 
     def references(self, columns: Sequence[Column]) -> Callable[[], References]:
         """See ``Subject``."""
-        kept = [column.effects for column in columns]
-        return partial(references, self.variant.blade, list(self.points), self.case.text.compare, kept)
+        effects = [column.effects for column in columns]
+        return partial(references, self.variant.blade, list(self.points), self.case.text.compare, effects)
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``."""

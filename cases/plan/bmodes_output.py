@@ -25,13 +25,13 @@ def read(path: Path) -> Iterator[tuple[int, str, float, float, str, int, Estimat
         CaseError: no frequency in the file, or no .bmi file with the rotor speed beside it.
     """
     omega = _speed(path.with_suffix(".bmi"), path)
-    none = True
+    is_empty = True
     for line, text in enumerate(_text(path).splitlines(), 1):
         if match := MODE.search(text):
-            none = False
-            printed = match[2].upper().replace("D", "E")
-            yield line, "", omega, 0.0, "", int(match[1]), from_print(printed, 2 * math.pi)
-    if none:
+            is_empty = False
+            digits = match[2].upper().replace("D", "E")
+            yield line, "", omega, 0.0, "", int(match[1]), from_print(digits, 2 * math.pi)
+    if is_empty:
         raise CaseError(f"{path}: no line `Mode No. 1 (freq = … Hz)`: give BModes' output, or a CSV file")
 
 

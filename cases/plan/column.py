@@ -61,10 +61,10 @@ class Column:
         pairs = list(zip(speeds, core, strict=True))
         if not self.solves:
             return self.work(pairs)
-        without = [without_reference(self.head, omega, r) for omega, r in pairs if isinstance(r, Failure)]
+        unreferenced = [without_reference(self.head, omega, r) for omega, r in pairs if isinstance(r, Failure)]
         solvable = [(omega, r) for omega, r in pairs if not isinstance(r, Failure)]
         cells, levels = self.work(solvable) if solvable else ([], [])
-        return without + cells, levels
+        return unreferenced + cells, levels
 
 
 def declined(head: Head, effects: Effects, reason: str) -> Column:

@@ -22,12 +22,12 @@ PATH = f"{pybmodes.__name__}:CODE"
 def columns(variant: Variant, codes: Sequence[Description], limits: Limits, target: float) -> list[Column]:
     """A column of pyBModes, if it is among the codes, is installed, and reads the format of the blade's file."""
     file, code = variant.file, pybmodes.CODE
-    asked = next((c for c in codes if c.name == "pybmodes" and c.version and not c.failure), None)
-    if file is None or asked is None or file.source.format not in pybmodes.FORMATS:
+    description = next((c for c in codes if c.name == "pybmodes" and c.version and not c.failure), None)
+    if file is None or description is None or file.source.format not in pybmodes.FORMATS:
         return []
     blade = variant.blade
     motions = code.motions_in(file.source.format)
-    head = Head(variant.name, code.name, asked.version or "", "code", target, "nothing", motions)
+    head = Head(variant.name, code.name, description.version or "", "code", target, "nothing", motions)
     effects = relevant_effects(code.effects, blade)
     if reason := code.unsupported(blade):
         return [declined(head, effects, reason)]

@@ -40,24 +40,26 @@ def _judged(pattern: str) -> tuple[JudgedSet, ...]:
     return judge(paths).sets
 
 
-def speeds(added: Sequence[str]) -> tuple[float, ...]:
+def speeds(arguments: Sequence[str]) -> tuple[float, ...]:
     """Rotor speeds of the linearisations among results ``NAME=FILE``, rad/s, ascending.
 
     Raises:
         CaseError: as ``read``.
     """
-    files = [text.partition("=")[2] for text in added]
-    return tuple(sorted({judged.azimuth_set.omega for file in files if matches(file) for judged in _judged(file)}))
+    files = [text.partition("=")[2] for text in arguments]
+    return tuple(
+        sorted({judged_set.azimuth_set.omega for file in files if matches(file) for judged_set in _judged(file)})
+    )
 
 
 def columns(
-    case: str, fst: str, pitch: float, target: float, motions: tuple[str, ...], added: Sequence[UserResults]
+    case: str, fst: str, pitch: float, target: float, motions: tuple[str, ...], user_results: Sequence[UserResults]
 ) -> list[Column]:
     """A column of a turbine for each of the results that are linearisations."""
     out = []
-    for results in added:
+    for results in user_results:
         if results.linearised:
-            files = sum(len(judged.azimuth_set.files) for judged in results.linearised)
+            files = sum(len(judged_set.azimuth_set.files) for judged_set in results.linearised)
             version = f"from {Path(results.path).name}, {files} file{'' if files == 1 else 's'}"
             head = Head(case, results.name, version, "code", target, "nothing", motions)
             work = partial(rows, head, fst, pitch, results.linearised)
@@ -65,13 +67,13 @@ def columns(
     return out
 
 
-def check(added: Sequence[UserResults], turbines: Collection[str]) -> None:
+def check(user_results: Sequence[UserResults], turbines: Collection[str]) -> None:
     """Check that linearisations are given for one turbine.
 
     Raises:
         CaseError: there is none, or several.
     """
-    for results in added:
+    for results in user_results:
         if results.linearised and len(turbines) != 1:
             raise CaseError(
                 f"--add {results.name}={results.path}: linearisations are compared with a turbine, and the run has "

@@ -88,7 +88,9 @@ class MechanismSubject(NotABlade):
             target=compare.target,
         )
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """Results of other programs are for blades and add no column."""
         return _columns(self.described, self.compare, codes, limits)
 

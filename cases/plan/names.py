@@ -34,9 +34,9 @@ def unique(subjects: Sequence[Subject], codes: Sequence[Description], user_resul
     _once("code", columns, "leave one out, or give it another name")
 
 
-def _once(kind: str, named: Iterable[tuple[str, str]], remedy: str) -> None:
+def _once(kind: str, sources: Iterable[tuple[str, str]], remedy: str) -> None:
     owners: dict[str, str] = {}
-    for name, source in named:
+    for name, source in sources:
         if name in owners:
             raise CaseError(f"{kind}: {name!r} is given twice, by {owners[name]} and by {source}: {remedy}")
         owners[name] = source

@@ -29,16 +29,16 @@ def setting(case: Case, variant: Variant) -> Setting:
     (unit,) = (u for u in get_args(Unit) if getattr(text.speeds, u) is not UNSET)
     speeds = variant.speeds * (30 / np.pi if unit == "rpm" else 1.0)
     of_blade = _dimensionless(variant.blade) if unit == "gamma" else _dimensional(variant.blade)
-    facts = {what: value for what, value in of_blade.items() if value}
+    facts = {label: value for label, value in of_blade.items() if value}
     facts["speeds"] = ", ".join(f"{v:.6g}" for v in speeds) + {"rad_s": " rad/s", "rpm": " rpm", "gamma": " (γ)"}[unit]
-    some = len(text.compare.motions) < len(MOTIONS)
-    moving = f" that move mostly {' or '.join(text.compare.motions)}" if some else ""
+    is_selection = len(text.compare.motions) < len(MOTIONS)
+    moving = f" that move mostly {' or '.join(text.compare.motions)}" if is_selection else ""
     facts["modes compared"] = f"the lowest {text.compare.modes}{moving}"
     facts["target"] = unsigned(text.compare.target)
     if text.discretisation:
         d = text.discretisation
-        what = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness".replace("_", "-")
-        facts["source's discretisation"] = what
+        label = f"{d.elements} elements, {d.mass} mass, {d.stiffness} stiffness".replace("_", "-")
+        facts["source's discretisation"] = label
     if variant.unused:
         facts[NOT_USED] = "; ".join(str(u).removeprefix("not used: ") for u in variant.unused)
     groups = text.compare.required(variant.name.partition("/")[2])

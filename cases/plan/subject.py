@@ -76,13 +76,15 @@ class Subject(Protocol):
         """Its description in a report."""
         ...
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """Its columns.
 
         Args:
             codes: descriptions of all codes of the run; ``refused`` is the answer to this subject's blade.
             limits: of each solution by a foreign code.
-            added: results of other programs and measurements.
+            user_results: results of other programs and measurements.
         """
         ...
 

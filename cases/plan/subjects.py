@@ -29,14 +29,16 @@ def subjects(request: Request, note: Callable[[str], None]) -> list[Subject]:
     """
     decks = speeds(request.rpm, request.omega)
     edits = [blade_changes.parse(text) for text in request.changes]
-    asked = request.subjects
-    unique = [s for k, s in enumerate(asked) if not isinstance(s, str) or s not in asked[:k]] or _everything(note)
-    chosen = [_changed(_read(subject, decks, request), edits) for subject in unique]
+    requested = request.subjects
+    unique = [s for k, s in enumerate(requested) if not isinstance(s, str) or s not in requested[:k]] or _everything(
+        note
+    )
+    selection = [_changed(_read(subject, decks, request), edits) for subject in unique]
     if not any(isinstance(s, str) and _deck(s) for s in unique) and (decks or request.mount != Mount()):
         raise CaseError(
             "--rpm, --omega, --length and the like are for blade files: a case defines its speeds and mounting"
         )
-    return [part for case in chosen for part in (blades(case) if isinstance(case, Case) else [case])]
+    return [part for case in selection for part in (blades(case) if isinstance(case, Case) else [case])]
 
 
 def _read(
@@ -46,8 +48,8 @@ def _read(
     if not isinstance(subject, str):
         return subject
     if _deck(subject):
-        if not request.blade_only and (whole := _turbine(subject, decks, request)):
-            return whole
+        if not request.blade_only and (turbine_subject := _turbine(subject, decks, request)):
+            return turbine_subject
         return _of_blade_file(subject, decks, request.mount)
     if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
         return mechanism.subject(library.mechanism(subject))
@@ -79,8 +81,8 @@ def _turbine(
 def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case:
     reading = readers.reading(Path(name), mount)
     source = reading.source
-    own = () if reading.speed is None else (reading.speed,)
-    at, rpm = decks or (own, True)
+    speeds = () if reading.speed is None else (reading.speed,)
+    at, rpm = decks or (speeds, True)
     blade = reading.mounted(Path(name)) if decks is None or any(at) else reading.blade
     if not at:
         raise CaseError(f"--rpm: missing: {name} does not define rotor speeds: give them, as in 0,6.9,12.1")
@@ -94,10 +96,10 @@ def _changed(case: Case | Subject, edits: Sequence[PropertyChange]) -> Case | Su
         return case
     if not isinstance(case, Case):
         raise CaseError(f"--set {edits[0]}: {case.name} is not a blade: leave it out")
-    what = "changed: " + ", ".join(str(change) for change in edits)
+    note = "changed: " + ", ".join(str(change) for change in edits)
     text = replaced(
         case.text,
-        title=f"{case.text.title}; {what}",
+        title=f"{case.text.title}; {note}",
         compare=replaced(case.text.compare, tables=()),
         discretisation=None,
     )
@@ -107,9 +109,9 @@ def _changed(case: Case | Subject, edits: Sequence[PropertyChange]) -> Case | Su
 
 def _everything(note: Callable[[str], None]) -> tuple[Case | Subject, ...]:
     """Every case and mechanism whose files are present."""
-    present, absent = library.load_all()
-    for name, why in absent.items():
+    cases, failures = library.load_all()
+    for name, why in failures.items():
         note(f"{name}: not run: {why}")
     machines = [mechanism.subject(library.mechanism(name)) for name in library.mechanisms()]
-    whole = [turbine.of_case(library.turbine(name)) for name in library.turbines()]
-    return (*present.values(), *machines, *whole)
+    turbines = [turbine.of_case(library.turbine(name)) for name in library.turbines()]
+    return (*cases.values(), *machines, *turbines)

@@ -129,11 +129,15 @@ class TurbineSubject(NotABlade):
             facts[NOT_USED] = "; ".join(str(u).removeprefix("not used: ") for u in self.source.unused)
         return facts
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """A column for each code that solves turbines, and for linearisations; other codes have none, unless they are alone."""
         takers = [code for code in codes if code.turbines or (code.failure and len(codes) == 1)]
-        given = linearised.columns(self.name, self.path, self.turbine.blade.pitch, self.target, (MOTION,), added)
-        return [*(self._column(code, limits) for code in takers or codes), *given]
+        linearised_columns = linearised.columns(
+            self.name, self.path, self.turbine.blade.pitch, self.target, (MOTION,), user_results
+        )
+        return [*(self._column(code, limits) for code in takers or codes), *linearised_columns]
 
     def _column(self, code: Description, limits: Limits) -> Column:
         head = Head(self.name, code.name, code.version or "", "code", self.target, code.shares, (MOTION,))

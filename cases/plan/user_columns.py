@@ -133,8 +133,8 @@ def _off(row: UserFrequency, omega: float) -> float:
 
 def _without_partner(head: Head, omega: float, row: UserFrequency, reference: Reference) -> Cell:
     """The cell of a row for a mode that the case does not compare."""
-    called, compared = f"{row.family} {row.mode}".strip(), ", ".join(reference.core.names)
-    reason = f"line {row.line}: the case does not compare mode {called} at this speed; it compares {compared}"
+    label, compared = f"{row.family} {row.mode}".strip(), ", ".join(reference.core.names)
+    reason = f"line {row.line}: the case does not compare mode {label} at this speed; it compares {compared}"
     return empty(head, omega, "not applicable", reason)
 
 

@@ -158,39 +158,41 @@ def _header(header: Sequence[str], where: str) -> _Columns:
         if header.count(column) > 1:
             raise CaseError(f"{where}: column {column!r} occurs {header.count(column)} times: give it once")
     columns = []
-    for what, units in (("speed", SPEED), ("frequency", (*FREQUENCY, *MEASURED))):
-        given = [column for column in header if column in units]
-        if len(given) != 1:
-            raise CaseError(f"{where}: {len(given)} columns of {what}: give exactly one of {', '.join(units)}")
-        columns.append(given[0])
+    for quantity, units in (("speed", SPEED), ("frequency", (*FREQUENCY, *MEASURED))):
+        matches = [column for column in header if column in units]
+        if len(matches) != 1:
+            raise CaseError(f"{where}: {len(matches)} columns of {quantity}: give exactly one of {', '.join(units)}")
+        columns.append(matches[0])
     if "mode" not in header:
         raise CaseError(f"{where}: column 'mode' is missing: name the mode of each frequency, as in flapwise 1, or 3")
     speed, frequency = columns
     allowed = ("uncertainty [%]", f"uncertainty {frequency.partition(' ')[2]}")
-    sure = [column for column in header if column in UNCERTAINTY]
-    if len(sure) > 1 or not set(sure) <= set(allowed):
-        message = f"{where}: columns of uncertainty: {', '.join(sure)}: give one at most, {' or '.join(allowed)}"
+    uncertainties = [column for column in header if column in UNCERTAINTY]
+    if len(uncertainties) > 1 or not set(uncertainties) <= set(allowed):
+        message = (
+            f"{where}: columns of uncertainty: {', '.join(uncertainties)}: give one at most, {' or '.join(allowed)}"
+        )
         raise CaseError(message)
     if INPUTS in header and frequency not in MEASURED:
         raise CaseError(
             f"{where}: column {INPUTS!r} is for measured frequencies: leave it out, or name the column of "
             "frequencies 'measured [Hz]'"
         )
-    return _Columns(speed, frequency, sure[0] if sure else "")
+    return _Columns(speed, frequency, uncertainties[0] if uncertainties else "")
 
 
 def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaults: Defaults) -> UserFrequency:
-    def number(column: str, least: float = 0.0, most: float = MAX_NUMBER) -> float:
+    def number(column: str, minimum: float = 0.0, maximum: float = MAX_NUMBER) -> float:
         text = row[column]
-        if len(text) > MAX_DIGITS or not NUMBER.fullmatch(text) or not least <= float(text) <= most:
-            required = "a number above 0" if least else "a number, 0 or more"
+        if len(text) > MAX_DIGITS or not NUMBER.fullmatch(text) or not minimum <= float(text) <= maximum:
+            required = "a number above 0" if minimum else "a number, 0 or more"
             raise CaseError(
-                f"{where}: {column}: {text!r} is not {required}, and at most {most:g}: correct it, with a decimal point"
+                f"{where}: {column}: {text!r} is not {required}, and at most {maximum:g}: correct it, with a decimal point"
             )
         return float(text)
 
     omega = number(columns.speed)
-    size = number(columns.frequency, least=1e-9)
+    size = number(columns.frequency, minimum=1e-9)
     value = from_print(row[columns.frequency], columns.unit)
     least = 1e-9 if columns.measured else 0.0  # measurements are never exact
     if row.get(columns.uncertainty, ""):
@@ -204,7 +206,7 @@ def _given(where: str, line: int, row: dict[str, str], columns: _Columns, defaul
                 "uncertainty), or give it for all rows with --data-uncertainty 1%"
             )
         value = Estimate(value.value, defaults.data)
-    inputs = number(INPUTS, most=100.0) / 100.0 if row.get(INPUTS, "") else defaults.inputs
+    inputs = number(INPUTS, maximum=100.0) / 100.0 if row.get(INPUTS, "") else defaults.inputs
     family, mode = _mode(where, row.get("family", ""), row["mode"])
     slack = from_print(row[columns.speed]).uncertainty if omega else 0.0
     unit = SPEED[columns.speed]
@@ -251,11 +253,11 @@ def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[flo
     Raises:
         CaseError: if not; one line, as for ``read``.
     """
-    taken = set(codes)
+    used_names = set(codes)
     for results in user_results:
-        if results.name in taken:
+        if results.name in used_names:
             raise CaseError(f"--add {results.name}: a code or another file has this name: give another")
-        taken.add(results.name)
+        used_names.add(results.name)
         for row in results.rows:
             where = f"{results.path}: line {row.line}"
             if row.blade and row.blade not in speeds:

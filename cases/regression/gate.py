@@ -105,8 +105,8 @@ class Comparison:
 def misses(entry: Entry) -> int:
     """Number of cells of a run that failed or were inconclusive, of seeded faults not detected, and of wrong properties."""
     cells = sum(RANK.get(p.verdict, 0) >= MISS for p in entry.cells)
-    wrong = sum(p.verdict == "fail" for p in entry.properties)
-    return cells + wrong + sum(not c.detected_by for c in entry.controls)
+    failed_properties = sum(p.verdict == "fail" for p in entry.properties)
+    return cells + failed_properties + sum(not c.detected_by for c in entry.controls)
 
 
 def nothing(after: Entry) -> Entry:
@@ -114,14 +114,14 @@ def nothing(after: Entry) -> Entry:
     return Entry("no baseline", "", after.machine, after.versions, ())
 
 
-def within(entry: Entry, other: Entry) -> Entry:
-    """``entry`` restricted to the cases and the seeded faults of ``other``."""
-    cases = {p.case for p in other.cells}
-    tried = {c.control for c in other.controls}
+def within(entry: Entry, scope: Entry) -> Entry:
+    """``entry`` restricted to the cases and the seeded faults of ``scope``."""
+    cases = {p.case for p in scope.cells}
+    controls = {c.control for c in scope.controls}
     return replace(
         entry,
         cells=tuple(p for p in entry.cells if p.case in cases),
-        controls=tuple(c for c in entry.controls if c.case in cases and c.control in tried),
+        controls=tuple(c for c in entry.controls if c.case in cases and c.control in controls),
         properties=tuple(p for p in entry.properties if p.case in cases),
     )
 
@@ -140,21 +140,21 @@ def compare(
     """
     old = {p.key: p for p in before.cells}
     changes = [CellChange(old.get(p.key), p) for p in after.cells if p.verdict != "measured"]
-    moved = [c for c in changes if abs(c.moved or 0.0) > tolerance]
+    moved_cells = [c for c in changes if abs(c.moved or 0.0) > tolerance]
     worse = sorted((c for c in changes if _worse(c)), key=lambda c: -RANK[c.after.verdict])
     listed = {c.after.key for c in worse}
-    tried = {c.control: bool(c.detected_by) for c in after.controls}
+    detected = {c.control: bool(c.detected_by) for c in after.controls}
     return Comparison(
         before=before,
         after=after,
-        moved=tuple(sorted(moved, key=lambda c: -abs(c.moved or 0.0))),
+        moved=tuple(sorted(moved_cells, key=lambda c: -abs(c.moved or 0.0))),
         worse=tuple(worse),
         better=tuple(c for c in changes if _better(c)),
         gone=tuple(g for g in _gone(old, after.cells) if g.point.key not in listed),
         new=tuple(
             c.after for c in changes if c.after.value is not None and not (c.before and c.before.value is not None)
         ),
-        undetected=tuple(c for c in before.controls if c.detected_by and not tried.get(c.control, False)),
+        undetected=tuple(c for c in before.controls if c.detected_by and not detected.get(c.control, False)),
         missed=tuple(missed),
         loosened=tuple(c for c in changes if _loosened(c)),
         measured=sum(p.verdict == "measured" for p in after.cells),
@@ -164,14 +164,14 @@ def compare(
 
 def _worse(change: CellChange) -> bool:
     """Whether the verdict is worse; for a new cell, whether it is a miss."""
-    then, now = change.before, RANK.get(change.after.verdict, 0)
-    return now > RANK[then.verdict] if then and then.verdict in RANK else now >= MISS
+    earlier, rank = change.before, RANK.get(change.after.verdict, 0)
+    return rank > RANK[earlier.verdict] if earlier and earlier.verdict in RANK else rank >= MISS
 
 
 def _loosened(change: CellChange) -> bool:
     """Whether the target is wider than before."""
-    then, now = change.before.target if change.before else None, change.after.target
-    return then is not None and now is not None and now > then * (1 + 1e-12)
+    earlier, current = change.before.target if change.before else None, change.after.target
+    return earlier is not None and current is not None and current > earlier * (1 + 1e-12)
 
 
 def _better(change: CellChange) -> bool:
@@ -180,13 +180,13 @@ def _better(change: CellChange) -> bool:
     return RANK[change.after.verdict] < RANK[change.before.verdict]
 
 
-def _gone(old: Mapping[Key, Point], now: Sequence[Point]) -> list[MissingAnswer]:
+def _gone(old: Mapping[Key, Point], current: Sequence[Point]) -> list[MissingAnswer]:
     """Missing answers. A code without an answer at a speed has one cell there, of mode 0, with the reason.
 
     An answer that has become a measurement counts as missing: it is no longer evidence.
     """
-    answered = {p.key for p in now if p.value is not None and p.verdict != "measured"}
-    verdicts: dict[Key, Verdict] = {p.key: p.verdict for p in now}
+    answered = {p.key for p in current if p.value is not None and p.verdict != "measured"}
+    verdicts: dict[Key, Verdict] = {p.key: p.verdict for p in current}
     due = [p for p in old.values() if p.value is not None and p.verdict != "measured"]
     gone = [p for p in due if p.key not in answered]
     return [

@@ -77,12 +77,12 @@ class _Task(Future[Any]):
         self.inner.add_done_callback(self._finish)
 
     def cancel(self) -> bool:
-        inner = self.inner
-        return super().cancel() and (inner is None or inner.cancel())
+        future = self.inner
+        return super().cancel() and (future is None or future.cancel())
 
-    def _finish(self, inner: Future[Any]) -> None:
+    def _finish(self, future: Future[Any]) -> None:
         self.inner = None
-        error: Any = BrokenExecutor("the Dask scheduler is lost") if inner.cancelled() else inner.exception()
+        error: Any = BrokenExecutor("the Dask scheduler is lost") if future.cancelled() else future.exception()
         if isinstance(error, import_module("distributed").KilledWorker):
             if self.rounds < ROUNDS and not self.cancelled():
                 self.start()
@@ -92,7 +92,7 @@ class _Task(Future[Any]):
         if not self.set_running_or_notify_cancel():  # cancelled
             return
         if error is None:
-            self.set_result(inner.result())
+            self.set_result(future.result())
         else:
             self.set_exception(error)
 
@@ -116,7 +116,7 @@ def _checked(software: Software, expected: tuple[tuple[str, str], ...], task: Ca
 
 
 @contextmanager
-def _client(address: str, given: str) -> Iterator[Any]:
+def _client(address: str, scheduler: str) -> Iterator[Any]:
     from distributed import Client
     from distributed.comm.core import connect
     from distributed.utils import silence_logging_cmgr
@@ -129,8 +129,8 @@ def _client(address: str, given: str) -> Iterator[Any]:
         client = Client(address, timeout=CONNECT, set_as_default=False)
     except (OSError, ValueError) as error:
         raise CaseError(
-            f"--scheduler {given}: no Dask scheduler answers ({error}): give the address that `dask scheduler` prints, as in "
-            "tcp://host:8786"
+            f"--scheduler {scheduler}: no Dask scheduler answers ({error}): give the address that `dask scheduler` prints, as "
+            "in tcp://host:8786"
         ) from error
     logging.getLogger("asyncio").setLevel(logging.CRITICAL)  # what Dask's loop leaves behind when a scheduler is lost
     with silence_logging_cmgr(logging.CRITICAL):  # what concerns the run is raised by its futures

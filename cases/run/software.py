@@ -24,10 +24,10 @@ class Software:
 @lru_cache
 def installed(software: Software) -> tuple[tuple[str, str], ...]:
     """Names and versions (or digests) in this process, in the order of ``software``; empty if not installed."""
-    ours = ("Southwell or its libraries", sources.package()[:12])
+    own_package = ("Southwell or its libraries", sources.package()[:12])
     packages = ((name, _version(name)) for name in software.packages)
     codes = ((f"the source of {name}", _source(name)) for name in software.codes)
-    return (ours, *packages, *codes)
+    return (own_package, *packages, *codes)
 
 
 def _version(package: str) -> str:

@@ -52,16 +52,16 @@ def given_back(blade: Blade, numbers: Sequence[tuple[float, float, float]]) -> b
     try:
         with warnings.catch_warnings():
             warnings.simplefilter("ignore", AccuracyWarning)  # the uncertainty is compared
-            printed = {modes.omega: modes for modes in sweep(blade, speeds, allow_large_strain=True)}
+            computed = {modes.omega: modes for modes in sweep(blade, speeds, allow_large_strain=True)}
     except (*NO_STATE, ArithmeticError):
         return False
     unsure = 0.0
     for omega, frequency, _ in numbers:
-        modes = printed[omega]
-        away = np.abs(frequency / modes.frequencies - 1.0)
-        if away.min() > GIVEN_BACK:
+        modes = computed[omega]
+        deviation = np.abs(frequency / modes.frequencies - 1.0)
+        if deviation.min() > GIVEN_BACK:
             return False
-        unsure = max(unsure, float(modes.uncertainty[away.argmin()]))
+        unsure = max(unsure, float(modes.uncertainty[deviation.argmin()]))
     return unsure > 100.0 * GIVEN_BACK
 
 
@@ -95,11 +95,15 @@ def _differences(
     """
     largest, error = 0.0, 0.0
     for omega, reference, answer in answers:
-        (ours,) = core_solver.answers(blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects)
+        (core_answer,) = core_solver.answers(
+            blade, [(omega, answer.elements, reference.core.count)], mass, stiffness, effects
+        )
         indices = list(reference.core.indices)
-        if not isinstance(ours, Modes) or min(len(ours.frequencies), len(answer.frequencies)) <= max(indices):
+        if not isinstance(core_answer, Modes) or min(len(core_answer.frequencies), len(answer.frequencies)) <= max(
+            indices
+        ):
             return None
-        values = ours.frequencies[indices]
+        values = core_answer.frequencies[indices]
         largest = max(largest, float(np.abs(answer.frequencies[indices] / values - 1.0).max()))
         if largest > DIGITS:
             return None

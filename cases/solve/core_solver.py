@@ -96,17 +96,17 @@ def converged(blade: Blade, speeds: Sequence[float], compare: Compare, effects: 
     """Core's converged modes at each speed (rad/s), with the given effects; a failure where too few modes qualify."""
     count, weight = 2 * compare.modes + MARGIN, weights(blade)
     by_speed = _converged(blade, speeds, compare, effects, weight, count)
-    if few := [omega for omega, answer in by_speed.items() if isinstance(answer, int)]:
+    if insufficient := [omega for omega, answer in by_speed.items() if isinstance(answer, int)]:
         count *= DEEPER
-        by_speed |= _converged(blade, few, compare, effects, weight, count)
+        by_speed |= _converged(blade, insufficient, compare, effects, weight, count)
     return [_enough(omega, by_speed[omega], compare.modes, count) for omega in speeds]
 
 
 def _enough(omega: float, answer: Converged | Failure | int, compared: int, count: int) -> Converged | Failure:
     if not isinstance(answer, int):
         return answer
-    few = f"at {omega:g} rad/s only {answer} of the lowest {count} modes qualify; reduce it"
-    return Failure("no reference", f"compare.modes: {compared}: {few}")
+    reason = f"at {omega:g} rad/s only {answer} of the lowest {count} modes qualify; reduce it"
+    return Failure("no reference", f"compare.modes: {compared}: {reason}")
 
 
 def _converged(
@@ -114,37 +114,37 @@ def _converged(
 ) -> dict[float, Converged | Failure | int]:
     """As ``converged``, by speed, from ``count`` modes; if too few of them qualify, their number."""
     raw: dict[tuple[float, int], Modes] = {}
-    chosen: dict[tuple[float, int], tuple[Compared, Array]] = {}
+    compared_at: dict[tuple[float, int], tuple[Compared, Array]] = {}
 
     def ask(runs: Sequence[Run]) -> list[spectrum.Answer]:
-        given = answers(blade, runs, effects=effects)
-        raw.update({(modes.omega, modes.elements): modes for modes in given if isinstance(modes, Modes)})
-        return spectrum.of_blades(given)
+        answered = answers(blade, runs, effects=effects)
+        raw.update({(modes.omega, modes.elements): modes for modes in answered if isinstance(modes, Modes)})
+        return spectrum.of_blades(answered)
 
-    def compared(omega: float, solved: Sequence[Spectrum]) -> tuple[Compared, Array]:
+    def compared(omega: float, spectra: Sequence[Spectrum]) -> tuple[Compared, Array]:
         """The modes to compare, and the energy fractions of all, by the finest answer."""
-        elements = solved[-1].elements
-        if (omega, elements) not in chosen:
+        elements = spectra[-1].elements
+        if (omega, elements) not in compared_at:
             finest = aligned(raw[omega, elements], weight)
             energies = participation(finest, blade)
             labelled = replace(spectrum.of_blade(finest, weight), labels=numbered(families(energies)))
-            chosen[omega, elements] = Compared(labelled, qualifying(energies, compare)), energies
-        return chosen[omega, elements]
+            compared_at[omega, elements] = Compared(labelled, qualifying(energies, compare)), energies
+        return compared_at[omega, elements]
 
     plan = refining(blade)
     refined = solve(ask, speeds, plan, count, lambda omega, solved: compared(omega, solved)[0])
     out: dict[float, Converged | Failure | int] = {}
-    enough: dict[float, tuple[Spectrum, ...]] = {}
+    sufficient: dict[float, tuple[Spectrum, ...]] = {}
     for omega, refinements in zip(speeds, refined, strict=True):
         if not refinements.answers:
             out[omega] = refinements.failure or Failure("refused", "no answer")
         elif (qualified := len(compared(omega, refinements.answers)[0].indices)) < compare.modes:
             out[omega] = qualified
         else:
-            enough[omega] = refinements.answers
-    meshes = [(omega, (solved[-2:][0].elements, solved[-1].elements)) for omega, solved in enough.items()]
+            sufficient[omega] = refinements.answers
+    meshes = [(omega, (solved[-2:][0].elements, solved[-1].elements)) for omega, solved in sufficient.items()]
     biases = rigid_strain_bias(blade, meshes, count, effects)
-    for (omega, solved), (factor, unsure) in zip(enough.items(), biases, strict=True):
+    for (omega, solved), (factor, unsure) in zip(sufficient.items(), biases, strict=True):
         target, energies = compared(omega, solved)
         modes = tuple(
             _corrected(mode, float(factor[k]), float(unsure[k]))

@@ -62,12 +62,12 @@ def deck_code(
 
 def _precone(blade: Blade, speeds: Sequence[float], count: int, effects: Effects) -> NDArray[np.float64]:
     """(speeds, count) relative changes of core's frequencies without precone, in ascending order of the frequencies."""
-    without = replace(blade, precone=0.0)
-    both = [
+    unconed = replace(blade, precone=0.0)
+    solutions = [
         [modes.frequencies for modes in sweep(body, speeds, count=count, accuracy=ACCURACY, effects=effects)]
-        for body in (blade, without)
+        for body in (blade, unconed)
     ]
-    return np.array([np.abs(flat / coned - 1.0) for coned, flat in zip(*both, strict=True)])
+    return np.array([np.abs(flat / coned - 1.0) for coned, flat in zip(*solutions, strict=True)])
 
 
 def _widened(cell: Cell, sizes: NDArray[np.float64], mode: int) -> Cell:

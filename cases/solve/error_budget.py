@@ -66,8 +66,8 @@ Altered = tuple[str, str, Modes | None]
 def solve(case: Case, variant: Variant) -> list[BudgetEntry]:
     """Error budget of one blade's compared modes, at the highest speed with printed numbers, or the highest of all."""
     blade, compare, source = variant.blade, case.text.compare, case.text.discretisation
-    printed = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
-    printed_at = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed, rtol=1e-9).any()]
+    printed_speeds = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
+    printed_at = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed_speeds, rtol=1e-9).any()]
     omega, count = max(printed_at or variant.speeds.tolist()), 2 * compare.modes + 2
     correct = _solved(blade, omega, FINE, count)
     if correct is None:

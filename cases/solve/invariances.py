@@ -98,11 +98,11 @@ class Invariances:
         """
         omega = -self.omega if invariance.reversed_rotation else self.omega
         modes = partial(solve.modes, count=self.count, accuracy=ACCURACY, allow_large_strain=True)
-        blade, other = invariance.alter(self.blade, 1)
+        blade, described_otherwise = invariance.alter(self.blade, 1)
         if blade is self.blade and not as_given:
             as_given.append(modes(blade, self.omega))
         first = as_given[0] if blade is self.blade else modes(blade, self.omega)
-        second = modes(other, omega)
+        second = modes(described_otherwise, omega)
         error = first.uncertainty + second.uncertainty + ROUNDING
         if invariance.exact:
             return first, second.frequencies, error

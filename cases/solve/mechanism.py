@@ -50,8 +50,8 @@ def _reference(described: Described, omega: float, count: int) -> Reference | Fa
     except (mb.MechanismError, EigenError) as error:
         return Failure("no reference", f"speeds: {omega:g} rad/s: {error}")
     if len(solved.values) < count:
-        few = f"compare.modes: {count}: the mechanism has {len(solved.values)} modes: reduce it"
-        return Failure("no reference", few)
+        reason = f"compare.modes: {count}: the mechanism has {len(solved.values)} modes: reduce it"
+        return Failure("no reference", reason)
     state = solved.linear.state
     joints = [name.partition(".")[0] for name in solved.leading]
     spectrum = replace(
@@ -88,7 +88,8 @@ def formula(form: ClosedForm, _: Described, speeds: Sequence[float]) -> list[Mec
 
 def compared(head: Head, described: Described, ask: Ask, core: AtSpeeds) -> Rows:
     """Rows of a solver at the speeds at which core has a reference."""
-    given = of_mechanisms(ask(described, [omega for omega, _ in core]))
+    spectra = of_mechanisms(ask(described, [omega for omega, _ in core]))
     return joined(
-        same_discretisation_cells(head, omega, r, a, r.core.spectrum) for (omega, r), a in zip(core, given, strict=True)
+        same_discretisation_cells(head, omega, r, a, r.core.spectrum)
+        for (omega, r), a in zip(core, spectra, strict=True)
     )

@@ -44,7 +44,7 @@ def paper_modes(blade: Blade, omega: float, elements: int, count: int, stiffness
         SteadyStateError: Newton's method finds no steady state from the undeformed blade.
         UnstableError: the steady state is not stable.
     """
-    begun = time.perf_counter()
+    start_time = time.perf_counter()
     chain = discretize(blade, elements, "half_end", stiffness)
     try:
         linear = _linear(pickle.dumps(as_mechanism.mechanism(chain, omega)))
@@ -58,11 +58,11 @@ def paper_modes(blade: Blade, omega: float, elements: int, count: int, stiffness
     values, vectors = (a[..., :count] for a in modes(linear))
     s = divide(blade, elements) / blade.length
     nodes = slice(len(t.inertia) - len(s), len(t.inertia))
-    moved = (linear.at.B @ linear.at.R @ vectors).reshape(-1, 6, len(values))[nodes]  # twists at the ground's origin
-    place = linear.at.X[:-1, :3, 3, None][nodes]
-    at_nodes = np.concatenate([moved[:, :3] + np.cross(moved[:, 3:], place, axis=1), moved[:, 3:4]], axis=1)
+    twists = (linear.at.B @ linear.at.R @ vectors).reshape(-1, 6, len(values))[nodes]  # twists at the ground's origin
+    position = linear.at.X[:-1, :3, 3, None][nodes]
+    at_nodes = np.concatenate([twists[:, :3] + np.cross(twists[:, 3:], position, axis=1), twists[:, 3:4]], axis=1)
     shapes = np.array([[np.interp(STATIONS, s, part) for part in mode.T] for mode in at_nodes.transpose(2, 0, 1)])
-    seconds = time.perf_counter() - begun
+    seconds = time.perf_counter() - start_time
     return Modes(omega, np.abs(values), shapes.transpose(0, 2, 1), chain.elements, seconds=seconds)
 
 

@@ -47,8 +47,8 @@ def of_reading(case: str, file: BladeFile | None, blade: Blade) -> tuple[list[Pr
         PropertyCheck(case, reader, version, "reading", "schema", comparison.TARGET, "inconclusive", violation)
         for violation in second.stations.violations
     ]
-    same = not second.contradictions
-    return rows, weighing.resolved(file.blade, second.stations) if same else weighing.stations_of(blade)
+    agrees = not second.contradictions
+    return rows, weighing.resolved(file.blade, second.stations) if agrees else weighing.stations_of(blade)
 
 
 def of_core(case: str, blade: Blade, stations: Stations, version: str) -> list[PropertyCheck]:

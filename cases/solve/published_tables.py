@@ -155,6 +155,6 @@ def discretised(
     out: list[Coarse | None] = []
     for mode in fine:
         levels = dict(mode.history)
-        paired = mode.estimate is not None and n in levels
-        out.append(Coarse(levels[n], mode.estimate.value) if paired and mode.estimate else None)
+        is_paired = mode.estimate is not None and n in levels
+        out.append(Coarse(levels[n], mode.estimate.value) if is_paired and mode.estimate else None)
     return out or [None] * len(compared.indices)

@@ -31,8 +31,8 @@ def relevant_effects(effects: Effects, blade: Blade, omega: float = 1.0) -> Effe
     return replace(effects if omega else ALL_EFFECTS, rotary_inertia=inertia)
 
 
-def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: Iterable[Effects]) -> References:
-    """Core's references with all effects, and with each of the effects ``kept``.
+def references(blade: Blade, speeds: Sequence[float], compare: Compare, effect_sets: Iterable[Effects]) -> References:
+    """Core's references with all effects, and with each of the sets of effects ``effect_sets``.
 
     Where core with all effects has no stable steady state, or too few modes, there is no reference for any effects, and the
     failure gives the reason.
@@ -47,12 +47,12 @@ def references(blade: Blade, speeds: Sequence[float], compare: Compare, kept: It
         return by_speed
 
     full = solve(ALL_EFFECTS, speeds)
-    absent = {omega: _absent(omega, modes) for omega, modes in full.items() if isinstance(modes, Failure)}
-    solvable = [omega for omega in speeds if omega not in absent]
+    failures = {omega: _absent(omega, modes) for omega, modes in full.items() if isinstance(modes, Failure)}
+    solvable = [omega for omega in speeds if omega not in failures]
     out: References = {}
-    for effects in {*kept, ALL_EFFECTS}:
+    for effects in {*effect_sets, ALL_EFFECTS}:
         present = zip(solvable, _references(blade, solvable, compare.target, effects, solve), strict=True)
-        by_speed = {**absent, **dict(present)}
+        by_speed = {**failures, **dict(present)}
         out[effects] = [by_speed[omega] for omega in speeds]
     return out
 
@@ -65,9 +65,9 @@ def _absent(omega: float, failure: Failure) -> Failure:
 
 
 def _references(
-    blade: Blade, speeds: Sequence[float], target: float, kept: Effects, solve: Solve
+    blade: Blade, speeds: Sequence[float], target: float, kept_effects: Effects, solve: Solve
 ) -> list[Reference | Failure]:
-    relevant_at = {omega: relevant_effects(kept, blade, omega) for omega in speeds}
+    relevant_at = {omega: relevant_effects(kept_effects, blade, omega) for omega in speeds}
     reduced = {
         omega: solve(effects, [o for o in speeds if relevant_at[o] == effects])[omega]
         for omega, effects in relevant_at.items()
@@ -77,13 +77,13 @@ def _references(
     partners = {omega: _partners(answer, full[omega]) for omega, answer in solved.items()}
     shifted = [omega for omega, answer in solved.items() if _shifted(answer, partners[omega][0], target)]
     changes: dict[float, list[list[Effect]]] = {omega: [[] for _ in answer.modes] for omega, answer in solved.items()}
-    for name in (f.name for f in fields(kept)):  # each effect alone
-        lacking = [omega for omega in shifted if not getattr(relevant_at[omega], name)]
-        alone = solve(replace(ALL_EFFECTS, **{name: False}), lacking)
-        for omega in lacking:
-            without, _ = _partners(solved[omega], alone[omega])
-            for effects, f, whole in zip(changes[omega], without, partners[omega][0], strict=True):
-                effects.append(Effect(name.replace("_", " "), _change(f, whole)))
+    for name in (f.name for f in fields(kept_effects)):  # each effect alone
+        speeds_without = [omega for omega in shifted if not getattr(relevant_at[omega], name)]
+        partial_models = solve(replace(ALL_EFFECTS, **{name: False}), speeds_without)
+        for omega in speeds_without:
+            partial_frequencies, _ = _partners(solved[omega], partial_models[omega])
+            for effects, f, full_frequency in zip(changes[omega], partial_frequencies, partners[omega][0], strict=True):
+                effects.append(Effect(name.replace("_", " "), _change(f, full_frequency)))
     return [
         Reference(answer, *partners[omega], tuple(map(tuple, changes[omega])))
         if not isinstance(answer, Failure)
@@ -92,22 +92,22 @@ def _references(
     ]
 
 
-def _shifted(reduced: Converged, whole: Sequence[float | None], target: float) -> bool:
+def _shifted(reduced: Converged, full_frequencies: Sequence[float | None], target: float) -> bool:
     """Whether a mode changes by more than the target due to what is left out."""
     values = [s.estimate.value if s.estimate else None for s in reduced.modes]
-    shifts = [_change(value, f) for value, f in zip(values, whole, strict=True)]
+    shifts = [_change(value, f) for value, f in zip(values, full_frequencies, strict=True)]
     return any(change is None or abs(change) > target for change in shifts)
 
 
-def _change(without: float | None, whole: float | None) -> float | None:
-    return without / whole - 1.0 if without and whole else None
+def _change(partial: float | None, full: float | None) -> float | None:
+    return partial / full - 1.0 if partial and full else None
 
 
-def _partners(reduced: Converged, other: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
-    """Frequencies in ``other`` of the modes of ``reduced``, and the MACs of the shapes."""
-    if isinstance(other, Failure):
+def _partners(reduced: Converged, full: Converged | Failure) -> tuple[tuple[float | None, ...], tuple[float, ...]]:
+    """Frequencies in ``full`` of the modes of ``reduced``, and the MACs of the shapes."""
+    if isinstance(full, Failure):
         return (None,) * len(reduced.modes), (0.0,) * len(reduced.modes)
-    theirs = dict(zip(other.indices, other.modes, strict=True))
-    partners = pair(reduced.spectrum, other.spectrum, reduced.indices, least=MAJORITY)
-    estimates = [theirs[p.mode].estimate if p.mode in theirs else None for p in partners]
+    modes = dict(zip(full.indices, full.modes, strict=True))
+    partners = pair(reduced.spectrum, full.spectrum, reduced.indices, min_mac=MAJORITY)
+    estimates = [modes[p.mode].estimate if p.mode in modes else None for p in partners]
     return tuple(e.value if e else None for e in estimates), tuple(p.mac for p in partners)

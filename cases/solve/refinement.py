@@ -66,16 +66,16 @@ def solve(
     failed: dict[float, Failure] = {}
     while runs:
         for (omega, _, _), answer in zip(runs, ask(runs), strict=True):
-            wrong = omega in failed and failed[omega].kind == "nonsense"  # final, whatever other refinements give
+            is_nonsense = omega in failed and failed[omega].kind == "nonsense"  # final, whatever other refinements give
             if isinstance(answer, Spectrum) and solved[omega] and answer.elements <= solved[omega][-1].elements:
                 answer = Failure(
                     "nonsense", f"elements: {answer.elements} after {solved[omega][-1].elements}: not refined"
                 )
             if isinstance(answer, Failure):
-                failed[omega] = failed[omega] if wrong else answer
+                failed[omega] = failed[omega] if is_nonsense else answer
             else:
                 solved[omega].append(answer)
-                if not wrong:
+                if not is_nonsense:
                     failed.pop(omega, None)
         open_ = [omega for omega in speeds if omega not in failed]
         unsure = {omega: _unsure(solved[omega], compared(omega, solved[omega]), refining) for omega in open_}

@@ -46,9 +46,11 @@ def references(turbine: Turbine, speeds: Sequence[float], count: int) -> Referen
 
 
 def _reference(coarse: Machine, fine: Machine, omega: float, count: int) -> Reference | Failure:
-    asked = count + MARGIN
+    requested = count + MARGIN
     try:
-        rough, exact = (spectrum(made.turbine, turbine_modes(made, omega, asked)) for made in (coarse, fine))
+        rough, exact = (
+            spectrum(assembled.turbine, turbine_modes(assembled, omega, requested)) for assembled in (coarse, fine)
+        )
     except (*NO_STATE, PeriodicError) as error:
         return Failure("no reference", f"{fine.turbine.name}, {omega:g} rad/s: {error}")
     indices = tuple(range(min(count, len(exact.values))))
@@ -59,8 +61,8 @@ def _reference(coarse: Machine, fine: Machine, omega: float, count: int) -> Refe
         doubt = None if change is None else max(float(change), ROUNDING)
         modes.append(RefinedMode(Estimate(frequencies[k], doubt), Pair(k, 1.0), ()))
     core = Converged(Compared(exact, indices), tuple(modes), (MOTION,) * len(indices))
-    every = len(indices)
-    return Reference(core, tuple(frequencies), (1.0,) * every, ((),) * every)
+    count_compared = len(indices)
+    return Reference(core, tuple(frequencies), (1.0,) * count_compared, ((),) * count_compared)
 
 
 def spectrum(turbine: Turbine, modes: TurbineModes) -> Spectrum:
@@ -85,9 +87,11 @@ def labels(names: Sequence[str]) -> tuple[str, ...]:
     return tuple(out)
 
 
-def of_turbines(given: Sequence[turbines.TurbineModes | Failure]) -> list[Answer]:
+def of_turbines(answers: Sequence[turbines.TurbineModes | Failure]) -> list[Answer]:
     """The spectra of a code's answers."""
-    return [a if isinstance(a, Failure) else Spectrum(a.values, a.shapes, COLUMNS, elements=a.elements) for a in given]
+    return [
+        a if isinstance(a, Failure) else Spectrum(a.values, a.shapes, COLUMNS, elements=a.elements) for a in answers
+    ]
 
 
 def refined_code(head: Head, name: str, turbine: Turbine, refining: Refining, limits: Limits, core: AtSpeeds) -> Rows:

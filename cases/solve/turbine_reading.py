@@ -61,17 +61,17 @@ def read_again(case: str, turbine: Turbine, path: Path, mount: Mount | None = No
         sizes[unit] = max(sizes.get(unit, 0.0), abs(value))
     rows = []
     overridden = {name for name, field in OVERRIDDEN.items() if mount and getattr(mount, field) is not None}
-    for what, (value, unit) in second.items():
-        if what in overridden:
+    for quantity, (value, unit) in second.items():
+        if quantity in overridden:
             continue
-        size = max(abs(own[what]), abs(value), SMALL * sizes[unit], np.finfo(float).tiny)
-        difference = (own[what] - value) / size
+        size = max(abs(own[quantity]), abs(value), SMALL * sizes[unit], np.finfo(float).tiny)
+        difference = (own[quantity] - value) / size
         agrees = abs(difference) <= TARGET
-        reason = "" if agrees else f"{what}: reader {own[what]:.6g} {unit}, {reader} {value:.6g}".strip()
+        reason = "" if agrees else f"{quantity}: reader {own[quantity]:.6g} {unit}, {reader} {value:.6g}".strip()
         rows.append(
             PropertyCheck(
-                *(case, name, version, "reading", what, TARGET, "pass" if agrees else "fail", reason),
-                *(own[what], value, unit, float(difference)),
+                *(case, name, version, "reading", quantity, TARGET, "pass" if agrees else "fail", reason),
+                *(own[quantity], value, unit, float(difference)),
             )
         )
     return rows

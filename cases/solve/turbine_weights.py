@@ -44,11 +44,11 @@ def expected(path: Path, blade: Blade, stations: Stations) -> Weighed | None:
 
 def of_core(turbine: Turbine) -> Fingerprint:
     """The turbine that core assembles: its tower's mesh, which carries nacelle and rotor, and its rotor at rest."""
-    made = machine(turbine)
-    state = balance(made.blade_mesh, 0.0, np.zeros(3), ALL_EFFECTS)
-    blade = component.reduced_component(made.blade_mesh, state, made.resolution.blade_modes)
-    rotor = equations.rotor(made.turbine, blade, 0.0, 0.0)[0]
-    return of_turbine(_body(made.tower_mesh), float(rotor[-1, -1]), made.resolution.blade_elements)
+    full_machine = machine(turbine)
+    state = balance(full_machine.blade_mesh, 0.0, np.zeros(3), ALL_EFFECTS)
+    blade = component.reduced_component(full_machine.blade_mesh, state, full_machine.resolution.blade_modes)
+    rotor = equations.rotor(full_machine.turbine, blade, 0.0, 0.0)[0]
+    return of_turbine(_body(full_machine.tower_mesh), float(rotor[-1, -1]), full_machine.resolution.blade_elements)
 
 
 def _body(mesh: Mesh) -> np.ndarray:
@@ -60,19 +60,19 @@ def _body(mesh: Mesh) -> np.ndarray:
 
 def rows(case: str, code: str, release: str, model: Fingerprint, weighed: Weighed) -> list[PropertyCheck]:
     """The rows of one model; first moments are compared relative to mass times height."""
-    whole = weighed.whole
-    moment = whole.mass * weighed.height
-    about = whole.inertia
+    moments = weighed.whole
+    moment = moments.mass * weighed.height
+    inertia = moments.inertia
     own = model.inertia or (0.0, 0.0, 0.0)
     compared = [
-        ("mass", "kg", model.mass, whole.mass, whole.mass),
+        ("mass", "kg", model.mass, moments.mass, moments.mass),
         *(
-            (f"first moment of mass {name}", "kg m", model.first_moments[k], float(whole.first[k]), moment)
+            (f"first moment of mass {name}", "kg m", model.first_moments[k], float(moments.first[k]), moment)
             for k, name in enumerate(("up", "to starboard", "downwind"))
         ),
         ("rotor's inertia about the shaft", "kg m²", model.rotor_inertia, weighed.rotor, weighed.rotor),
         *(
-            (f"inertia about the base, {name}", "kg m²", own[k], float(about[k]), float(about[k]))
+            (f"inertia about the base, {name}", "kg m²", own[k], float(inertia[k]), float(inertia[k]))
             for k, name in enumerate(("yaw", "pitch", "roll"))
         ),
     ]

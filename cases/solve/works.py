@@ -77,10 +77,10 @@ def same_code(
     if any(isinstance(answer, Failure) for answer in core_answers):
         elements = finest
         core_answers = ask(elements)
-    again = [ask(elements, scale) for scale in (3.0, 7.0)]
-    theirs = of_blades(answers(name, blade, runs(elements), limits, head.version))
-    noises = [rounding(a, others) for a, *others in zip(core_answers, *again, strict=True)]
-    rows = zip(core, theirs, core_answers, noises, strict=True)
+    scaled_answers = [ask(elements, scale) for scale in (3.0, 7.0)]
+    spectra = of_blades(answers(name, blade, runs(elements), limits, head.version))
+    noises = [rounding(a, rescaled) for a, *rescaled in zip(core_answers, *scaled_answers, strict=True)]
+    rows = zip(core, spectra, core_answers, noises, strict=True)
     return joined(
         same_discretisation_cells(head, omega, r, a, b, rounding_of_core) for (omega, r), a, b, rounding_of_core in rows
     )

@@ -44,8 +44,8 @@ def decode(content: bytes) -> Any:
 def _plain(value: Any) -> Any:
     """Lists, strings and numbers; types that JSON lacks become a list that begins with the type."""
     if isinstance(value, np.ndarray):
-        packed = zlib.compress(np.ascontiguousarray(value).tobytes(), 1)
-        return ["array", value.dtype.str, list(value.shape), b64encode(packed).decode()]
+        compressed = zlib.compress(np.ascontiguousarray(value).tobytes(), 1)
+        return ["array", value.dtype.str, list(value.shape), b64encode(compressed).decode()]
     if isinstance(value, np.generic):
         return _plain(value.item())
     if value is None or isinstance(value, bool | int | str):
@@ -73,13 +73,13 @@ def _dataclass(name: str, members: list[Any]) -> Any:
     module, _, kind = name.partition(":")
     if not module.startswith(f"{PACKAGE}."):
         raise ValueError(f"{name}: not a type of this package")
-    made = getattr(sys.modules[module], kind)
-    names = [f.name for f in fields(made)]
-    return made(**{n: nan if n == TIME else _decoded(member) for n, member in zip(names, members, strict=True)})
+    type_ = getattr(sys.modules[module], kind)
+    names = [f.name for f in fields(type_)]
+    return type_(**{n: nan if n == TIME else _decoded(member) for n, member in zip(names, members, strict=True)})
 
 
-def _array(dtype: str, shape: list[int], packed: str) -> np.ndarray:
-    content = zlib.decompress(b64decode(packed))
+def _array(dtype: str, shape: list[int], compressed: str) -> np.ndarray:
+    content = zlib.decompress(b64decode(compressed))
     return np.frombuffer(content, dtype=np.dtype(dtype)).reshape(shape).copy()
 
 

@@ -31,13 +31,13 @@ def digest(task: Callable[..., Any], *arguments: Any) -> str:
 
 
 def _digested(value: Any) -> bytes:
-    made = sha256()
+    checksum = sha256()
 
     def add(part: bytes) -> None:
-        made.update(b"%d:%b" % (len(part), part))
+        checksum.update(b"%d:%b" % (len(part), part))
 
     _feed(value, add)
-    return made.digest()
+    return checksum.digest()
 
 
 def _feed(value: Any, add: Callable[[bytes], None]) -> None:

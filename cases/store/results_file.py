@@ -59,8 +59,8 @@ def write(path: Path, run: Run) -> None:
         OSError: if the file cannot be written; an existing file is then unchanged.
         ValueError: if the run is unfinished.
     """
-    if what := run.unfinished or gaps(run):
-        raise ValueError(f"{path}: not written: {what}")
+    if problem := run.unfinished or gaps(run):
+        raise ValueError(f"{path}: not written: {problem}")
     atomic.write(path, (msgspec.json.encode(line) + b"\n" for line in _lines(run)))
 
 
@@ -81,8 +81,8 @@ def gaps(run: Run) -> str:
     if not missing:
         return ""
     first = f"{missing[0].case} × {missing[0].code}"
-    more = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
-    return f"cells of {first}{more} are missing, of {len(run.plan)} planned"
+    remainder = f" and {len(missing) - 1} more" if len(missing) > 1 else ""
+    return f"cells of {first}{remainder} are missing, of {len(run.plan)} planned"
 
 
 def _done(planned: Planned, modes: dict[float, list[int]]) -> bool:
@@ -98,7 +98,7 @@ def read(path: Path) -> Run:
         ValueError: if a complete line is not in the format of this version; the message names file and line.
     """
     rows: dict[str, list[Any]] = {kind: [] for kind in KINDS}
-    about: dict[str, Any] = {}
+    header: dict[str, Any] = {}
     *lines, truncated = read_bytes(path, LARGEST_DATA).split(b"\n")
     kinds = []
     for number, line in enumerate(lines, 1):
@@ -106,14 +106,14 @@ def read(path: Path) -> Run:
             data = msgspec.json.decode(line)
             kinds.append(kind := data.pop("kind"))
             if kind == "run":
-                about |= {
+                header |= {
                     "versions": msgspec.convert(data["versions"], dict[str, str]),
                     "command": msgspec.convert(data["command"], str),
                 }
             elif kind == "plan":
-                about["plan"] = msgspec.convert(data["columns"], tuple[Planned, ...])
+                header["plan"] = msgspec.convert(data["columns"], tuple[Planned, ...])
             elif kind == "end":
-                about["end"] = data["lines"]
+                header["end"] = data["lines"]
             else:
                 row = msgspec.convert(data, KINDS[kind])
                 checks.check(row)
@@ -122,8 +122,8 @@ def read(path: Path) -> Run:
             raise ValueError(
                 f"{path}: line {number}: not a result ({error}): check that this version wrote it"
             ) from error
-    end = about.pop("end", None)
-    run = Run(**{ROWS[kind]: tuple(of_kind) for kind, of_kind in rows.items()}, **about)
+    end = header.pop("end", None)
+    run = Run(**{ROWS[kind]: tuple(of_kind) for kind, of_kind in rows.items()}, **header)
     return replace(run, unfinished=_unfinished(kinds, truncated, end) or gaps(run))
 
 

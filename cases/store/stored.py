@@ -132,10 +132,10 @@ def _done(value: Any) -> Future[Any]:
 class _Kept(Future[Any]):
     """Future of a task that completes when its answer is stored."""
 
-    def __init__(self, inner: Future[Any], keep: Callable[[Any], None]) -> None:
+    def __init__(self, future: Future[Any], keep: Callable[[Any], None]) -> None:
         super().__init__()
-        self.inner, self.keep = inner, keep
-        inner.add_done_callback(self._finish)
+        self.inner, self.keep = future, keep
+        future.add_done_callback(self._finish)
 
     def running(self) -> bool:
         return self.inner.running()
@@ -143,18 +143,18 @@ class _Kept(Future[Any]):
     def cancel(self) -> bool:
         return self.inner.cancel()
 
-    def _finish(self, inner: Future[Any]) -> None:
-        if inner.cancelled():
+    def _finish(self, future: Future[Any]) -> None:
+        if future.cancelled():
             super().cancel()
             self.set_running_or_notify_cancel()
             return
-        error = inner.exception()
+        error = future.exception()
         if error is None:
             try:
-                self.keep(inner.result())
+                self.keep(future.result())
             except Exception as failed:  # no space left, or an answer of unknown type
                 error = failed
         if error is None:
-            self.set_result(inner.result())
+            self.set_result(future.result())
         else:
             self.set_exception(error)

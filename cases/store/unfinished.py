@@ -67,10 +67,10 @@ class Unfinished:
         facts = {"plan": run.plan, "settings": run.settings, "versions": run.versions, "command": run.command}
         content = msgspec.json.encode(facts)
         try:
-            same = self.store.get(ABOUT)[0] == content
+            is_same_run = self.store.get(ABOUT)[0] == content
         except KeyError:
-            same = False
-        if not same:
+            is_same_run = False
+        if not is_same_run:
             self.store.put(ABOUT, ABOUT, content)
         self.begun = self.store.get(ABOUT)[1]
 
@@ -116,21 +116,21 @@ def read(path: Path) -> Run:
         raise FileNotFoundError(2, "No such file or directory", str(path))
     store = Store(path)
     try:
-        content, begun = store.get(ABOUT)
+        content, start_time = store.get(ABOUT)
         facts = msgspec.json.decode(content, type=dict[str, Any])
         plan = msgspec.convert(facts["plan"], tuple[Planned, ...])
         settings = msgspec.convert(facts["settings"], tuple[Setting, ...])
-        answers = [codec.decode(rows) for rows in store.values(ROWS, begun)]
+        answers = [codec.decode(rows) for rows in store.values(ROWS, start_time)]
     except KeyError:
         return Run((), unfinished="the run was stopped before its first answer")
     except (TypeError, ValueError) as error:
         raise ValueError(f"{path}: not an unfinished run ({error}): check that this version wrote it") from error
     finally:
         store.close()
-    place = {(p.case, p.code): k for k, p in enumerate(plan)}
+    position = {(p.case, p.code): k for k, p in enumerate(plan)}
 
     def order(row: Cell | Level) -> int:
-        return place.get((row.case, row.code), len(place))
+        return position.get((row.case, row.code), len(position))
 
     run = Run(
         cells=tuple(sorted((c for cells, _ in answers for c in cells), key=order)),

@@ -54,12 +54,12 @@ class StudyJournal:
                 ) from error
             first = msgspec.json.encode(header) + b"\n"
             with path.open("rb") as file:
-                begun = file.readline(len(first) + MOST_HEADER)
-                if begun.endswith(b"\n"):
-                    _check(begun, header, path)
-                    self.size = _scan(file, len(begun), self)
+                first_line = file.readline(len(first) + MOST_HEADER)
+                if first_line.endswith(b"\n"):
+                    _check(first_line, header, path)
+                    self.size = _scan(file, len(first_line), self)
                     self.file.truncate(self.size)
-                elif first.startswith(begun):  # empty, or stopped while the header was written
+                elif first.startswith(first_line):  # empty, or stopped while the header was written
                     self.size = 0
                     self.file.truncate(0)
                     self._append(first)
@@ -81,10 +81,10 @@ class StudyJournal:
         self.done[number] = 1
 
     def _append(self, record: bytes) -> None:
-        written = 0
+        size_written = 0
         try:
-            while written < len(record):
-                written += self.file.write(record[written:])
+            while size_written < len(record):
+                size_written += self.file.write(record[size_written:])
         except OSError as error:
             with suppress(OSError):
                 self.file.truncate(self.size)
@@ -108,15 +108,20 @@ def _foreign(path: Path) -> CaseError:
 
 def _check(line: bytes, expected: Header, path: Path) -> None:
     try:
-        begun = _header.decode(line)
+        existing = _header.decode(line)
     except (msgspec.DecodeError, UnicodeDecodeError):
         raise _foreign(path) from None
-    if begun.package != expected.package:
-        other = f"{begun.version}, here {expected.version}" if begun.version != expected.version else "changed sources"
-        raise CaseError(
-            f"--out {path}: written by another version of Southwell or its libraries ({other}): answers are not mixed: {OTHER}"
+    if existing.package != expected.package:
+        difference = (
+            f"{existing.version}, here {expected.version}"
+            if existing.version != expected.version
+            else "changed sources"
         )
-    if begun != expected:
+        raise CaseError(
+            f"--out {path}: written by another version of Southwell or its libraries ({difference}): "
+            f"answers are not mixed: {OTHER}"
+        )
+    if existing != expected:
         raise CaseError(f"--out {path}: of another study: the study file or a blade has changed: {OTHER}")
 
 

@@ -112,13 +112,15 @@ def _answers(task: Task) -> Iterator[tuple[float, list[NamedMode] | str]]:
     except Exception as error:
         yield from ((omega, _reason(error, task)) for omega in task.speeds)
         return
-    rest = None
+    solutions = None
     for k, omega in enumerate(task.speeds):
-        rest = rest or sweep(blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain)
+        solutions = solutions or sweep(
+            blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain
+        )
         try:
-            answer = next(rest)
+            answer = next(solutions)
         except Exception as error:
-            rest, answer = None, _reason(error, task)
+            solutions, answer = None, _reason(error, task)
         yield omega, answer
 
 

@@ -18,7 +18,7 @@ def run(
     study: Study,
     executor: Executor,
     journal: StudyJournal,
-    on_progress: Callable[[int], None] = lambda done: None,
+    on_progress: Callable[[int], None] = lambda count_done: None,
     answer: Callable[[Task], bytes] = solve,
     window: int = WINDOW,
 ) -> None:
@@ -36,26 +36,26 @@ def run(
         JournalError: if rows cannot be written.
         BrokenExecutor: if workers are lost. Answers that have arrived are in the journal in every case.
     """
-    done = sum(journal.done)
-    on_progress(done)
+    count_done = sum(journal.done)
+    on_progress(count_done)
     todo = tasks(study, (k for k, finished in enumerate(bytes(journal.done)) if not finished))
     pending: dict[Future[bytes], int] = {}
-    ended: SimpleQueue[Future[bytes]] = SimpleQueue()
+    completed: SimpleQueue[Future[bytes]] = SimpleQueue()
 
-    def submit(most: int) -> None:
-        for number, task in islice(todo, most):
+    def submit(limit: int) -> None:
+        for number, task in islice(todo, limit):
             future = executor.submit(answer, task)
             pending[future] = number
-            future.add_done_callback(ended.put)
+            future.add_done_callback(completed.put)
 
     try:
         submit(window)
         while pending:
-            future = ended.get()
+            future = completed.get()
             lines = future.result()
             journal.put(pending.pop(future), lines)
-            done += 1
-            on_progress(done)
+            count_done += 1
+            on_progress(count_done)
             submit(1)
     finally:
         for future in pending:

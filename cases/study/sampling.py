@@ -68,8 +68,8 @@ class Values(Struct, frozen=True, forbid_unknown_fields=True, tag_field="distrib
 
     def quantile(self, probability: Array) -> Array:
         """The values (n,) at probabilities (n,)."""
-        place = np.minimum((probability * len(self.values)).astype(int), len(self.values) - 1)
-        return np.array(self.values)[place]
+        index = np.minimum((probability * len(self.values)).astype(int), len(self.values) - 1)
+        return np.array(self.values)[index]
 
     def error(self) -> str | None:
         """Why the parameters are invalid, or None."""
@@ -79,18 +79,18 @@ class Values(Struct, frozen=True, forbid_unknown_fields=True, tag_field="distrib
 Distribution = Normal | Uniform | Values
 
 
-def _factor(field: str, least: float, absolute: bool) -> str | None:
-    return None if absolute or least > 0 else f"{field}: {least:g}: a factor is positive: correct it"
+def _factor(field: str, smallest: float, absolute: bool) -> str | None:
+    return None if absolute or smallest > 0 else f"{field}: {smallest:g}: a factor is positive: correct it"
 
 
-def distributions(given: Mapping[str, Any], path: str) -> dict[str, Distribution]:
+def distributions(tables: Mapping[str, Any], path: str) -> dict[str, Distribution]:
     """The distributions in the table ``properties`` of a study file.
 
     Raises:
         CaseError: naming the property and the field.
     """
     distributions: dict[str, Distribution] = {}
-    for name, table in given.items():
+    for name, table in tables.items():
         if name not in PROPERTIES:
             raise CaseError(f"{path}: properties.{name}: not a property of a blade: {nearest(name, PROPERTIES)}")
         distribution: Distribution = convert(table, Distribution, path, f"properties.{name}")  # type: ignore[arg-type]
@@ -118,5 +118,5 @@ def sample(properties: Mapping[str, Distribution], samples: int, seed: int) -> A
 
 def changes(properties: Mapping[str, Distribution], values: Array) -> tuple[PropertyChange, ...]:
     """The changes of a blade for one sample (properties,)."""
-    given = zip(properties.items(), values.tolist(), strict=True)
-    return tuple(PropertyChange(name, value, not distribution.absolute) for (name, distribution), value in given)
+    pairs = zip(properties.items(), values.tolist(), strict=True)
+    return tuple(PropertyChange(name, value, not distribution.absolute) for (name, distribution), value in pairs)

@@ -101,24 +101,24 @@ def read(path: Path) -> tuple[Study, tuple[Unused, ...]]:
     pairs = [pair for entry in text.blades for pair in _blades(entry, path)]
     blades = tuple(blade for blade, _ in pairs)
     for k, blade in enumerate(blades):
-        if blade.name in [other.name for other in blades[:k]]:
+        if blade.name in [earlier.name for earlier in blades[:k]]:
             raise CaseError(f"{path}: blades: {blade.name!r} twice: rows are found by its name: rename one, or drop it")
     return Study(blades, tuple(speeds.tolist()), properties, text), tuple(
         entry for _, unused in pairs for entry in unused
     )
 
 
-def _blades(given: str | BladeFile, study: Path) -> list[tuple[Blade, tuple[Unused, ...]]]:
+def _blades(source: str | BladeFile, study: Path) -> list[tuple[Blade, tuple[Unused, ...]]]:
     """Blades of a case or a file, with the quantities that are not used; files are in the folder of the study file."""
-    if isinstance(given, str) and given.partition("/")[0] in library.names():
-        return [(variant.blade, variant.unused) for variant in library.select(given).variants]
+    if isinstance(source, str) and source.partition("/")[0] in library.names():
+        return [(variant.blade, variant.unused) for variant in library.select(source).variants]
     with files.reading(study):
         folder = study.parent
-        if isinstance(given, str):
-            path = str(folder / given)
+        if isinstance(source, str):
+            path = str(folder / source)
             if not library.is_blade_file(path):
-                case = library.select(path if given.endswith(".toml") else given)
+                case = library.select(path if source.endswith(".toml") else source)
                 return [(variant.blade, variant.unused) for variant in case.variants]
-            given = BladeFile(given)
-        reading = readers.reading(folder / given.file, given.mount(folder))
-        return [(reading.mounted(folder / given.file), reading.source.unused)]
+            source = BladeFile(source)
+        reading = readers.reading(folder / source.file, source.mount(folder))
+        return [(reading.mounted(folder / source.file), reading.source.unused)]

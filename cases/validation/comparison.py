@@ -82,7 +82,7 @@ class Simulated:
     numerical: dict[str, float]
 
 
-def changes(base: dict[str, float], other: dict[str, float]) -> dict[str, float]:
+def changes(base: dict[str, float], varied: dict[str, float]) -> dict[str, float]:
     """Absolute change (Hz) of each mode of ``base`` in a slightly different model; ∞ if that model has too few modes.
 
     Modes of equal symmetry veer instead of crossing as the model changes, and may exchange their dominant motion. The k-th
@@ -90,18 +90,20 @@ def changes(base: dict[str, float], other: dict[str, float]) -> dict[str, float]
     """
     out = {}
     for symmetry in "SA":
-        ours, theirs = ([(n, f) for n, f in at.items() if n.split()[0].endswith(symmetry)] for at in (base, other))
-        changed = sorted(f for _, f in theirs)
-        for k, (name, f) in enumerate(sorted(ours, key=lambda mode: mode[1])):
-            out[name] = abs(changed[k] - f) if k < len(changed) else np.inf
+        base_modes, varied_modes = (
+            [(n, f) for n, f in at.items() if n.split()[0].endswith(symmetry)] for at in (base, varied)
+        )
+        other_frequencies = sorted(f for _, f in varied_modes)
+        for k, (name, f) in enumerate(sorted(base_modes, key=lambda mode: mode[1])):
+            out[name] = abs(other_frequencies[k] - f) if k < len(other_frequencies) else np.inf
     return out
 
 
 def inputs(at: Sequence[dict[str, float]]) -> dict[str, float]:
     """u_input from the frequencies of all ``variations`` at one speed: root of the sum of squared changes."""
-    plain, *others = at
-    moved = [changes(plain, other) for other in others]
-    return {name: float(np.sqrt(sum(m[name] ** 2 for m in moved))) for name in plain}
+    plain, *variations = at
+    shifts = [changes(plain, variation) for variation in variations]
+    return {name: float(np.sqrt(sum(m[name] ** 2 for m in shifts))) for name in plain}
 
 
 def variations() -> tuple[Variation, ...]:
@@ -148,9 +150,9 @@ def points(model: Simulated) -> tuple[Point, ...]:
             at_modes = [at_speed([at[name] for at in model.base], rpm) for name in line["of"]]
             all_, between = [f for f, _ in at_modes], max(u for _, u in at_modes)
             S = float(np.mean(all_))
-            apart = 0.5 * (max(all_) - min(all_))  # which of a pair was measured is not known
+            half_spread = 0.5 * (max(all_) - min(all_))  # which of a pair was measured is not known
             discretised = max(model.numerical[name] for name in line["of"]) * S
-            numerical = np.sqrt(discretised**2 + apart**2 + between**2)
+            numerical = np.sqrt(discretised**2 + half_spread**2 + between**2)
             u = max(np.interp(rpm, VARIED_AT, [at[name] for at in model.inputs]) for name in line["of"])
             out.append(
                 Point(line["name"], rpm, Validation(S, measured, float(numerical), float(u), data()["uncertainty"]))

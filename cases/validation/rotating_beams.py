@@ -94,10 +94,10 @@ def points(name: str) -> Iterator[Point]:
     for column, sweep in enumerate(d["sweep"]):
         blades = [beam(name, sweep, factors) for factors in varied]
         for row, rpm in enumerate(d["rpm"]):
-            base, *others = (solved(blade, rpm) for blade in blades)
+            base, *variations = (solved(blade, rpm) for blade in blades)
             for k, table in enumerate(d["frequencies"], 1):
                 mode = f"flapwise {k}"
-                S, sure = base[mode]
-                inputs = float(np.sqrt(sum((other[mode][0] - S) ** 2 for other in others)))
+                S, uncertainty = base[mode]
+                inputs = float(np.sqrt(sum((variation[mode][0] - S) ** 2 for variation in variations)))
                 line = f"{mode}, {sweep:g}°" if len(d["sweep"]) > 1 else mode
-                yield Point(line, rpm, Validation(S, table[row][column], sure * S, inputs, d["measured"]))
+                yield Point(line, rpm, Validation(S, table[row][column], uncertainty * S, inputs, d["measured"]))

@@ -104,8 +104,8 @@ def members(how: Variation) -> tuple[Member, ...]:
     d = data()
     top, (low, high) = d["height"], d["struts"]
     y = np.array([0.0, 1.0, 0.0])
-    inner = d["tower"]["elements"] - 2
-    z, _ = _between([0.0, low, high, top], [how.refine, inner * how.refine, how.refine])
+    inner_elements = d["tower"]["elements"] - 2
+    z, _ = _between([0.0, low, high, top], [how.refine, inner_elements * how.refine, how.refine])
     out = [Member("tower", np.outer(z, [0.0, 0.0, 1.0]), ("tower",) * (len(z) - 1), y)]
 
     def radius(z: Array) -> Array:

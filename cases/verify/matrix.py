@@ -156,14 +156,14 @@ def run(
 
 
 def _diagnosed(
-    plans: Sequence[_Task], rows: dict[tuple[str, str], Rows], executor: Executor, added: Collection[str]
+    plans: Sequence[_Task], rows: dict[tuple[str, str], Rows], executor: Executor, user_names: Collection[str]
 ) -> tuple[Diagnosed, ...]:
     """Why columns that fail, and files of other programs, differ from core; one that cannot be solved is left out."""
     futures: list[Future[Diagnosed]] = []
     for task in plans:
         for column in task.columns:
             cells, _ = rows[task.subject.name, column.name]
-            if task.subject.blade is not None and diagnosis.is_due(cells, column.name in added):
+            if task.subject.blade is not None and diagnosis.is_due(cells, column.name in user_names):
                 futures.append(executor.submit(diagnosis.diagnosed, task.subject.blade, cells, task.subject.file))
     return tuple(answer for answer in map(_answer, futures) if isinstance(answer, Diagnosed))
 

@@ -47,8 +47,8 @@ def check(files: Sequence[UserResults], data: str | None, inputs: str | None) ->
     Raises:
         CaseError: if an uncertainty is given and no file has measurements.
     """
-    for option, given in (("--data-uncertainty", data), ("--input-uncertainty", inputs)):
-        if given is not None and not any(results.measured for results in files):
+    for option, uncertainty in (("--data-uncertainty", data), ("--input-uncertainty", inputs)):
+        if uncertainty is not None and not any(results.measured for results in files):
             raise CaseError(
-                f"{option}: {given}: no file of --add has measured frequencies: name their column 'measured [Hz]'"
+                f"{option}: {uncertainty}: no file of --add has measured frequencies: name their column 'measured [Hz]'"
             )

@@ -112,25 +112,25 @@ def planned(request: Request, observer: Observer) -> Plan:
     Raises:
         CaseError, UnknownCodeError: as ``verify``.
     """
-    chosen = subjects(request, observer.note)
-    asked = list(dict.fromkeys(request.codes)) if request.codes is not None else list(registry.names())
-    codes = describe(asked, asked_about(chosen))
+    selection = subjects(request, observer.note)
+    requested = list(dict.fromkeys(request.codes)) if request.codes is not None else list(registry.names())
+    codes = describe(requested, asked_about(selection))
     defaults = measurements.defaults(request.data_uncertainty, request.input_uncertainty)
-    added = [measurements.user_results(text, defaults) for text in request.add]
-    measurements.check(added, request.data_uncertainty, request.input_uncertainty)
-    names.unique(chosen, codes, added)
-    user_results.check(added, speeds_of_blades(chosen), [c.name for c in codes])
-    linearised.check(added, [subject.name for subject in chosen if isinstance(subject, TurbineSubject)])
-    about = Run(
+    added_results = [measurements.user_results(text, defaults) for text in request.add]
+    measurements.check(added_results, request.data_uncertainty, request.input_uncertainty)
+    names.unique(selection, codes, added_results)
+    user_results.check(added_results, speeds_of_blades(selection), [c.name for c in codes])
+    linearised.check(added_results, [subject.name for subject in selection if isinstance(subject, TurbineSubject)])
+    empty_run = Run(
         cells=(),
-        versions=matrix.versions(codes, added),
+        versions=matrix.versions(codes, added_results),
         command=command_line(request),
-        settings=tuple(_required(subject.setting(), request) for subject in chosen),
+        settings=tuple(_required(subject.setting(), request) for subject in selection),
     )
-    for setting in about.settings:
+    for setting in empty_run.settings:
         if NOT_USED in setting.facts:
             observer.note(f"{setting.case}: {NOT_USED}: {setting.facts[NOT_USED]}")
-    return Plan(tuple(chosen), tuple(codes), tuple(added), about, table.chosen(request.faults))
+    return Plan(tuple(selection), tuple(codes), tuple(added_results), empty_run, table.chosen(request.faults))
 
 
 def _required(setting: Setting, request: Request) -> Setting:
@@ -147,8 +147,8 @@ def _kept(request: Request, plan: Plan, out: Path, users: Store | None, observer
         stack.callback(shutil.rmtree, scratch, ignore_errors=True)  # after the processes have ended
         pool = stack.enter_context(_pool(execution, plan, scratch.resolve(), observer))
         with writable(f"--out {out}"):
-            opened = Unfinished(out)
-        with opened as answers:
+            store = Unfinished(out)
+        with store as answers:
             shutil.rmtree(scratch, ignore_errors=True)  # left by a killed run
             try:
                 scratch.mkdir()
@@ -185,13 +185,17 @@ def _solved(
     turbines = [subject for subject in plan.subjects if isinstance(subject, TurbineSubject) and subject.users]
     on_turbines = own_turbine.chosen(plan.faults) if turbines else ()
     # faults of a blade say nothing of a run on turbines alone
-    covered = {*on_blades, *on_turbines, *(table.FAST if turbines and len(turbines) == len(plan.subjects) else ())}
-    elsewhere = tuple(name for name in plan.faults if name not in covered)
+    covered_faults = {
+        *on_blades,
+        *on_turbines,
+        *(table.FAST if turbines and len(turbines) == len(plan.subjects) else ()),
+    }
+    elsewhere = tuple(name for name in plan.faults if name not in covered_faults)
     shares = _shares(elsewhere, request.execution.workers or SHARES)
-    tried: list[Future[list[Control]]] = []
+    trial_futures: list[Future[list[Control]]] = []
 
     def try_faults() -> None:
-        tried.extend(trials.submit(table.run, share, users is not None) for share in shares)
+        trial_futures.extend(trials.submit(table.run, share, users is not None) for share in shares)
 
     def begin(columns: tuple[Planned, ...]) -> None:
         if answers:
@@ -225,14 +229,16 @@ def _solved(
         ]
         if on_turbines == own_turbine.NAMES:
             on_own += [trials.submit(own_turbine.reading, subject) for subject in turbines]
-        for others in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
-            on_own += [trials.submit(others, subject) for subject in users_blades]
-        controls = {control.control: control for future in tried for control in future.result()}
-    about = plan.about
+        for run_own in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
+            on_own += [trials.submit(run_own, subject) for subject in users_blades]
+        controls = {control.control: control for future in trial_futures for control in future.result()}
+    empty_run = plan.about
     ordered = (*(c for future in on_own for c in future.result()), *(controls[name] for name in elsewhere))
     if times := [*tasks.taken, *trials.taken]:
         observer.note(_taken(times, tasks.asked + trials.asked))
-    return replace(run, controls=ordered, versions=about.versions, command=about.command, settings=about.settings)
+    return replace(
+        run, controls=ordered, versions=empty_run.versions, command=empty_run.command, settings=empty_run.settings
+    )
 
 
 @contextmanager
@@ -253,7 +259,7 @@ def _pool(execution: Execution, plan: Plan, scratch: Path | None, observer: Obse
 @contextmanager
 def _store(fresh: bool, observer: Observer) -> Iterator[Store | None]:
     """Open the store of answers; None if it is not wanted, which the processes of codes learn too, or cannot be used."""
-    before = os.environ.get(store.FRESH)
+    previous = os.environ.get(store.FRESH)
     if fresh:
         os.environ[store.FRESH] = "1"
     users = None
@@ -267,7 +273,7 @@ def _store(fresh: bool, observer: Observer) -> Iterator[Store | None]:
     finally:
         if users:
             users.close()
-        if fresh and before is None:
+        if fresh and previous is None:
             del os.environ[store.FRESH]
 
 
@@ -277,10 +283,10 @@ def _shares(faults: Sequence[str], parts: int) -> list[Sequence[str]]:
     return [faults[k : k + size] for k in range(0, len(faults), size)] if faults else []
 
 
-def _taken(times: Sequence[float], asked: int) -> str:
+def _taken(times: Sequence[float], requested: int) -> str:
     first, last = (time.strftime("%Y-%m-%d %H:%M", time.localtime(when(times))) for when in (min, max))
     computed = f"computed between {first} and {last}; --fresh computes them again"
-    return f"{len(times)} of {asked} answers are from the store, {computed}"
+    return f"{len(times)} of {requested} answers are from the store, {computed}"
 
 
 def _reason(error: BaseException) -> str:

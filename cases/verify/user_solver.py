@@ -81,7 +81,9 @@ class SolverSubject(BladeSubject):
 
     solver: UserSolver
 
-    def columns(self, codes: Sequence[Description], limits: Limits, added: Sequence[UserResults]) -> list[Column]:
+    def columns(
+        self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
+    ) -> list[Column]:
         """See ``Subject``."""
         return [_column(self.solver, self.variant, self.case.text.compare)]
 
@@ -116,8 +118,8 @@ def _rows(head: Head, solver: UserSolver, variant: Variant, compare: Compare, co
     """Cells of a solver at the speeds of core's references, with those against the printed numbers that core passes."""
     finest = 4 * solver.levels[-1]
     refining = Refining(solver.levels, solver.order, finest) if solver.refines else Refining((1,), 0, 1, bracket=True)
-    solved = refinements(partial(_answers, solver, variant.blade), refining, core)
-    cells, levels = joined(refined(head, omega, r, s, refining.order, refining.bracket) for omega, r, s in solved)
+    answers = refinements(partial(_answers, solver, variant.blade), refining, core)
+    cells, levels = joined(refined(head, omega, r, s, refining.order, refining.bracket) for omega, r, s in answers)
     return cells + _printed(cells, solver, variant, compare, core), levels
 
 
@@ -160,16 +162,16 @@ def _printed(
 ) -> list[Cell]:
     """The solver's frequencies against the printed numbers that core passes with the table's and with the solver's effects."""
     speeds = [omega for omega, _ in core]
-    solved = {relevant_effects(solver.effects, variant.blade): core}
+    cores = {relevant_effects(solver.effects, variant.blade): core}
     out = []
     for table in published_tables.about(variant.blade, compare.tables):
         effects = relevant_effects(table.series.effects, variant.blade)
-        if effects not in solved:
+        if effects not in cores:
             answers = zip(speeds, references(variant.blade, speeds, compare, [effects])[effects], strict=True)
-            solved[effects] = [(omega, r) for omega, r in answers if not isinstance(r, Failure)]
+            cores[effects] = [(omega, r) for omega, r in answers if not isinstance(r, Failure)]
         head = Head(variant.name, table.name, "", "table", compare.target, "nothing")
-        printed, _ = published_tables.rows(head, table, variant.blade, None, solved[effects])
-        agreed = {(c.omega, c.mode): c for c in printed if c.verdict == "pass"}
+        rows, _ = published_tables.rows(head, table, variant.blade, None, cores[effects])
+        agreed = {(c.omega, c.mode): c for c in rows if c.verdict == "pass"}
         for cell in cells:
             number = agreed.get((cell.omega, cell.mode))
             if number and cell.family == number.family and _agrees(cell.reference, number):
@@ -184,16 +186,16 @@ def _agrees(reference: float | None, number: Cell) -> bool:
     return judge(reference / number.value - 1.0, number.uncertainty, number.target)[0] == "pass"
 
 
-def _compared(cell: Cell, number: Cell, printed: float) -> Cell:
+def _compared(cell: Cell, number: Cell, reference: float) -> Cell:
     """One frequency against one printed number; a known difference of the frequency remains known."""
-    difference = (cell.value or 0.0) / printed - 1.0
+    difference = (cell.value or 0.0) / reference - 1.0
     uncertainty = None if cell.uncertainty is None else cell.uncertainty + (number.uncertainty or 0.0)
     verdict, reason = judge(difference, uncertainty, max(cell.target, number.target))
     if verdict != "pass" and cell.verdict == "known difference":
         verdict, reason = cell.verdict, cell.reason
     name = f"{cell.code}, {number.code}"
     return replace(
-        cell, code=name, role="table", reference=printed, difference=difference, uncertainty=uncertainty,
+        cell, code=name, role="table", reference=reference, difference=difference, uncertainty=uncertainty,
         target=max(cell.target, number.target), verdict=verdict, reason=reason,
     )  # fmt: skip
 
@@ -208,11 +210,11 @@ def alike(cell: Cell, effects: Sequence[FaultEffect]) -> str:
     candidates: list[tuple[float, str]] = []
     for fault_effect in effects:
         for m in fault_effect.modes:
-            same = m.name.split()[0] == cell.family and abs(m.correct / cell.reference - 1.0) < SAME_MODE
-            if fault_effect.omega == cell.omega and same and m.change is not None:
-                rest = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
-                if abs(rest) <= 0.1 * abs(cell.difference):
-                    size = f"({percent(m.change)}; {unsigned(rest)} from it)"
-                    likeness = f"agrees with Southwell's own solver with this fault: {fault_effect.fault} {size}"
-                    candidates.append((abs(rest), likeness))
+            same_mode = m.name.split()[0] == cell.family and abs(m.correct / cell.reference - 1.0) < SAME_MODE
+            if fault_effect.omega == cell.omega and same_mode and m.change is not None:
+                remainder = cell.value / (cell.reference * (1.0 + m.change)) - 1.0
+                if abs(remainder) <= 0.1 * abs(cell.difference):
+                    size = f"({percent(m.change)}; {unsigned(remainder)} from it)"
+                    similarity = f"agrees with Southwell's own solver with this fault: {fault_effect.fault} {size}"
+                    candidates.append((abs(remainder), similarity))
     return min(candidates)[1] if candidates else ""

@@ -23,17 +23,17 @@ CARRIED = (DAMPING,)
 """Names of the unused quantities that are carried over."""
 
 
-def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
+def write(blade: Blade, path: Path, unused: Sequence[Unused] = ()) -> Mount:
     """Write the main file at ``path`` and the blade file next to it; return the mounting for ElastoDyn's main file.
 
-    Between stations BeamDyn interpolates twist and curve by a natural spline in z. ``given`` are the unused quantities of
+    Between stations BeamDyn interpolates twist and curve by a natural spline in z. ``unused`` are the unused quantities of
     the blade's original file; those in ``CARRIED`` are written.
 
     Raises:
         CaseError: if the format does not support a property: rigid strains, root joints, tip masses, kinks, curves that
             turn back.
     """
-    lacks = {
+    unrepresented = {
         "rigid strains": bool(np.isinf(blade.stiffness).any()),
         "a root that is not clamped": not np.isinf(blade.root).all(),
         "a tip mass (ElastoDyn's main file has it)": bool(blade.tip_mass.any()),
@@ -41,7 +41,7 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
         "a curve that turns back": bool((np.diff(blade.curve[:, 0]) <= 0).any()),
         "a curve that begins beside the root": bool(blade.curve[0].any()),
     }
-    for feature, present in lacks.items():
+    for feature, present in unrepresented.items():
         if present:
             raise CaseError(f"{path}: BeamDyn cannot represent {feature}: write TOML, which can represent any blade")
     axis = _axis(blade)
@@ -50,7 +50,7 @@ def write(blade: Blade, path: Path, given: Sequence[Unused] = ()) -> Mount:
     sections = blade_file(path)
     points = np.stack([blade.curve[:, 2], -blade.curve[:, 1], z, degrees], axis=1)
     atomic.write(path, _main_text(blade.name, points, sections.name))
-    atomic.write(sections, _blade_text(blade, axis.arc / axis.arc[-1], given))
+    atomic.write(sections, _blade_text(blade, axis.arc / axis.arc[-1], unused))
     return Mount(hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 
@@ -121,8 +121,8 @@ def _main_text(name: str, points: Array, sections: str) -> str:
     return _MAIN.format(name=name, count=len(points), points=lines, sections=sections)
 
 
-def _blade_text(blade: Blade, eta: Array, given: Sequence[Unused]) -> str:
-    damping = next((u.values for u in given if u.name == DAMPING and len(u.values) == 6), (0.0,) * 6)
+def _blade_text(blade: Blade, eta: Array, unused: Sequence[Unused]) -> str:
+    damping = next((u.values for u in unused if u.name == DAMPING and len(u.values) == 6), (0.0,) * 6)
     lines = [
         "------- BEAMDYN V1.00.* INDIVIDUAL BLADE INPUT FILE --------------------------",
         blade.name,
@@ -135,9 +135,9 @@ def _blade_text(blade: Blade, eta: Array, given: Sequence[Unused]) -> str:
         "  ".join(fortran(mu) for mu in damping),
         "---------------------- DISTRIBUTED PROPERTIES---------------------------------",
     ]
-    theirs = [in_axes(m, BEAMDYN.T) for m in (blade.stiffness, blade.mass)]
+    matrices = [in_axes(m, BEAMDYN.T) for m in (blade.stiffness, blade.mass)]
     for k, fraction in enumerate(eta):
         lines.append(fortran(fraction))
-        for matrix in theirs:
+        for matrix in matrices:
             lines += ["  ".join(fortran(x) for x in line) for line in matrix[k]] + [""]
     return "\n".join(lines) + "\n"

@@ -25,21 +25,21 @@ CARRIED = (DAMPING, "PitchAxis")
 """Names of the unused quantities that are carried over."""
 
 
-def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] = ()) -> Mount:
+def write(blade: Blade, path: Path, omega: float = 0.0, unused: Sequence[Unused] = ()) -> Mount:
     """Write the blade file, and return the mounting that the main file must contain.
 
     Args:
         blade: uncoupled, straight, without stretch, torsion, rotary inertia and tip inertia, as the format requires.
         path: path of the file.
         omega: rotor speed, rad/s, at which the mode shapes are computed (``cases.writers.elastodyn_shapes``).
-        given: unused quantities of the blade's original file; those in ``CARRIED`` are written.
+        unused: quantities of the blade's original file; those in ``CARRIED`` are written.
 
     Raises:
         CaseError: if the format does not support a property of the blade, or a mode is not found.
     """
     diagonal = np.diagonal(blade.stiffness, axis1=1, axis2=2)
     off = ~np.eye(6, dtype=bool)
-    lacks = {
+    unrepresented = {
         "finite stiffness in stretch, shear or torsion": not np.isinf(
             diagonal[:, [AXIAL, SHEAR_Y, SHEAR_Z, TORSION]]
         ).all(),
@@ -49,11 +49,11 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
         "a root that is not clamped": not np.isinf(blade.root).all(),
         "a tip mass (the main file has it)": bool(blade.tip_mass.any()),
     }
-    for feature, present in lacks.items():
+    for feature, present in unrepresented.items():
         if present:
             raise CaseError(f"{path}: ElastoDyn cannot represent {feature}: write TOML or BeamDyn, or remove it first")
     n = len(blade.stations)
-    damping, pitch_axis = (_given(given, name, count) for name, count in zip(CARRIED, (3, n), strict=True))
+    damping, pitch_axis = (_given(unused, name, count) for name, count in zip(CARRIED, (3, n), strict=True))
     shapes = [shape.coefficients.tolist() for shape in polynomials(blade, omega)]
     rows = np.column_stack(
         [
@@ -93,7 +93,7 @@ def write(blade: Blade, path: Path, omega: float = 0.0, given: Sequence[Unused] 
     return Mount(length=blade.length, hub_radius=blade.hub_radius, precone=blade.precone, pitch=blade.pitch)
 
 
-def _given(given: Sequence[Unused], name: str, count: int) -> tuple[float, ...]:
+def _given(unused: Sequence[Unused], name: str, count: int) -> tuple[float, ...]:
     """The values of a quantity that is carried over; zeros if it is not given, or not for these stations."""
-    columns = [u.values for u in given if u.name == name and len(u.values) == count]
+    columns = [u.values for u in unused if u.name == name and len(u.values) == count]
     return columns[0] if columns else (0.0,) * count

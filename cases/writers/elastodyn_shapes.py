@@ -126,17 +126,19 @@ def polynomials(blade: Blade, omega: float, elements: int | None = None) -> tupl
 
 def as_it_is(blade: Blade, solved: Modes) -> tuple[Polynomial, ...]:
     """The same fits for the full blade: the out-of-plane or in-plane part of the modes with these names, if present."""
-    named = numbered(families(participation(solved, blade)))
-    return tuple(_of(solved, blade, name) for name in ELASTODYN_NAMES if name in named)
+    names = numbered(families(participation(solved, blade)))
+    return tuple(_of(solved, blade, name) for name in ELASTODYN_NAMES if name in names)
 
 
 def _of(solved: Modes, blade: Blade, name: str) -> Polynomial:
-    named = numbered(families(participation(solved, blade)))
-    if name not in named:
-        raise CaseError(f"{blade.name}: no {name} among the lowest modes, {', '.join(named)}: ElastoDyn needs it")
-    k = named.index(name)
-    sure = float(solved.uncertainty[k]) if len(solved.uncertainty) else np.inf
-    return replace(fit(name, float(solved.frequencies[k]), component(solved, k, name.split()[0])), uncertainty=sure)
+    names = numbered(families(participation(solved, blade)))
+    if name not in names:
+        raise CaseError(f"{blade.name}: no {name} among the lowest modes, {', '.join(names)}: ElastoDyn needs it")
+    k = names.index(name)
+    uncertainty = float(solved.uncertainty[k]) if len(solved.uncertainty) else np.inf
+    return replace(
+        fit(name, float(solved.frequencies[k]), component(solved, k, name.split()[0])), uncertainty=uncertainty
+    )
 
 
 def component(solved: Modes, k: int, family: str) -> Array:

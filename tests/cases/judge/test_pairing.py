@@ -78,7 +78,9 @@ def test_order_scale_and_phase_do_not_matter(order: list[int], phases: tuple[flo
 def test_the_index_of_a_mode_does_not_matter_however_close_the_choice_is() -> None:
     """Two modes exchanged and mixed by 43°: MAC 0.535 with the partner, 0.465 with the mode of the same index."""
     c, s, (a, b, *_) = np.cos(np.radians(43.0)), np.sin(np.radians(43.0)), REFERENCE.shapes
-    pairs = pair(modes([10.0, 15.0], [a, b]), modes([10.0, 15.0], [c * b - s * a, c * a + s * b]), range(2), least=0.5)
+    pairs = pair(
+        modes([10.0, 15.0], [a, b]), modes([10.0, 15.0], [c * b - s * a, c * a + s * b]), range(2), min_mac=0.5
+    )
     assert [p.mode for p in pairs] == [1, 0]
 
 
