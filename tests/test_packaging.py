@@ -108,8 +108,8 @@ def test_issue_forms_ask_for_what_a_discrepancy_needs() -> None:
     assert set(forms) == {"bug", "frequency-discrepancy"}
     for form in forms.values():
         assert all(field["validations"]["required"] for field in form["body"])
-    asked = {field["id"] for field in forms["frequency-discrepancy"]["body"]}
-    assert asked == {"blade", "numbers", "source", "where", "versions"}
+    field_ids = {field["id"] for field in forms["frequency-discrepancy"]["body"]}
+    assert field_ids == {"blade", "numbers", "source", "where", "versions"}
 
 
 @pytest.fixture(scope="module")
@@ -132,8 +132,10 @@ def wheel(tmp_path_factory: pytest.TempPathFactory) -> set[str]:
     for module in Path(compiled.__file__).parent.glob(f"*{sysconfig.get_config_var('EXT_SUFFIX')}"):
         shutil.copy(module, built)
     command = [sys.executable, "-m", "pip", "wheel", "--no-deps", "--no-build-isolation", "--wheel-dir", str(out), "."]
-    made = subprocess.run(command, cwd=source, capture_output=True, text=True, env={**os.environ, "PIP_NO_INDEX": "1"})
-    assert made.returncode == 0, made.stderr
+    process = subprocess.run(
+        command, cwd=source, capture_output=True, text=True, env={**os.environ, "PIP_NO_INDEX": "1"}
+    )
+    assert process.returncode == 0, process.stderr
     (file,) = out.glob("*.whl")
     return set(zipfile.ZipFile(file).namelist())
 

@@ -43,9 +43,9 @@ def terms(t: park2010_input.Tree, q: Array, v_I: Array, names: tuple[str, ...] |
     return park2010.equations(t, q, v_I, park2010.partition(t, q, names))
 
 
-def assert_close(ours: Array, theirs: Array, tolerance: float = AGREE) -> None:
-    assert ours.shape == theirs.shape
-    assert np.abs(ours - theirs).max(initial=0.0) <= tolerance * np.abs(theirs).max(initial=1e-300)
+def assert_close(actual: Array, expected: Array, tolerance: float = AGREE) -> None:
+    assert actual.shape == expected.shape
+    assert np.abs(actual - expected).max(initial=0.0) <= tolerance * np.abs(expected).max(initial=1e-300)
 
 
 # closed forms ---------------------------------------------------------------------------------------------------------
@@ -208,12 +208,12 @@ def test_the_solver_has_these_terms_on_random_trees(seed: int) -> None:
     t, tree = park2010_input.tree(m), compile_tree(m)
     assert tuple(t.coordinates) == tree.coordinates
     q = 0.4 * np.random.default_rng(seed).normal(size=len(t.coordinates))
-    ours, state = oracle.linearize(t, q), state_at(tree, q)
-    theirs = linearization.about(tree, state)
+    actual, state = oracle.linearize(t, q), state_at(tree, q)
+    expected = linearization.about(tree, state)
     for name in ("M", "C", "K"):
-        assert_close(getattr(ours, name), getattr(theirs, name))
-    assert_close(-ours.at.Q_hat, balance_at(tree, q).independent_forces)
-    park2010.accelerations(t, ours.at)
+        assert_close(getattr(actual, name), getattr(expected, name))
+    assert_close(-actual.at.Q_hat, balance_at(tree, q).independent_forces)
+    park2010.accelerations(t, actual.at)
 
 
 def test_complex_steps_are_difference_quotients() -> None:
@@ -258,22 +258,22 @@ LOOPS = {
 def test_the_solver_has_these_terms_on_closed_loops(name: str) -> None:
     """M̂, Ĉ, K̂ about the steady state, where Q̂ vanishes, the state itself, and all eigenvalues."""
     m, guess = LOOPS[name]
-    theirs = modal.linearize(m, guess)
+    expected = modal.linearize(m, guess)
     t = park2010_input.tree(at_time(m, 0.0))
-    q = theirs.state.q
-    ours = oracle.linearize(t, q, theirs.names)
+    q = expected.state.q
+    actual = oracle.linearize(t, q, expected.names)
     for matrix in ("M", "C", "K"):
-        assert_close(getattr(ours, matrix), getattr(theirs, matrix))
-    v_I, dv_I = (a[ours.part.I] for a in oracle.rates(t, q))
-    residual = oracle.unbalanced(t, ours.part, q, v_I, dv_I)
-    assert np.abs(residual).max(initial=0.0) <= 1e-10 * np.abs(theirs.K).max(initial=1e-300)
+        assert_close(getattr(actual, matrix), getattr(expected, matrix))
+    v_I, dv_I = (a[actual.part.I] for a in oracle.rates(t, q))
+    residual = oracle.unbalanced(t, actual.part, q, v_I, dv_I)
+    assert np.abs(residual).max(initial=0.0) <= 1e-10 * np.abs(expected.K).max(initial=1e-300)
     assert_close(oracle.steady_state(t, q + 1e-3), q)
-    if len(theirs.M):
-        park2010.accelerations(t, ours.at)
-        solution = modal.modes(theirs)
+    if len(expected.M):
+        park2010.accelerations(t, actual.at)
+        solution = modal.modes(expected)
         values = getattr(solution, "values", None)
         values = 1j * solution.frequencies if values is None else values
-        assert_close(np.sort(np.abs(oracle.modes(ours)[0])), np.sort(np.abs(values)))
+        assert_close(np.sort(np.abs(oracle.modes(actual)[0])), np.sort(np.abs(values)))
 
 
 # blades ---------------------------------------------------------------------------------------------------------------
@@ -318,15 +318,15 @@ def test_the_column_is_there_for_every_blade_and_is_no_witness(name: str) -> Non
 @pytest.mark.parametrize("name", ["curved-solid", "nrel-5mw", "articulated/sprung"])
 def test_shapes_are_those_of_the_solver(name: str) -> None:
     blade, omega = BLADES[name][1].blade, float(BLADES[name][1].speeds[-1])
-    ours = paper.paper_modes(blade, omega, 20, 6)
-    theirs = solve.mesh_modes(blade, omega, 20, 6, mass="half_end", stiffness="body_fixed")
-    assert_close(ours.frequencies, theirs.frequencies)
-    assert mac(ours, theirs).min() > 1.0 - 1e-6
+    actual = paper.paper_modes(blade, omega, 20, 6)
+    expected = solve.mesh_modes(blade, omega, 20, 6, mass="half_end", stiffness="body_fixed")
+    assert_close(actual.frequencies, expected.frequencies)
+    assert mac(actual, expected).min() > 1.0 - 1e-6
 
 
-def mac(ours: Modes, theirs: Modes) -> Array:
+def mac(actual: Modes, expected: Modes) -> Array:
     """MAC of complex shapes one by one: 1 if they differ by a complex factor only, so phases too must agree."""
-    a, b = (m.shapes.reshape(len(m.frequencies), -1) for m in (ours, theirs))
+    a, b = (m.shapes.reshape(len(m.frequencies), -1) for m in (actual, expected))
     return np.abs((a.conj() * b).sum(1)) ** 2 / ((np.abs(a) ** 2).sum(1) * (np.abs(b) ** 2).sum(1))
 
 

@@ -58,8 +58,8 @@ class Analytic(BladeAdapter):
     def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
         section = sample(blade, 0.0)
         rate = np.sqrt(section.EI_y[0] / section.mass[0]) / blade.length**2
-        wrong = self.factor * (1.0 + self.error / elements**self.true_order)
-        frequencies = np.repeat(np.square(ROOTS) * rate * wrong, len(self.columns))
+        altered = self.factor * (1.0 + self.error / elements**self.true_order)
+        frequencies = np.repeat(np.square(ROOTS) * rate * altered, len(self.columns))
         shapes = np.zeros((len(frequencies), 21, 4), complex)
         for k, root in enumerate(ROOTS):
             for i, column in enumerate(self.columns):

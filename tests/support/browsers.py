@@ -41,12 +41,12 @@ def page(running: Any, **options: Any) -> Any:
 @contextmanager
 def tab(running: Any) -> Iterator[Any]:
     """A page whose console must stay silent, which opens no dialog, and fetches nothing from elsewhere."""
-    opened = page(running, viewport={"width": 1280, "height": 900})
-    said: list[str] = []
-    opened.on("console", lambda m: said.append(m.text) if m.type in ("error", "warning") else None)
-    opened.on("pageerror", lambda e: said.append(str(e)))
-    opened.on("dialog", lambda d: (said.append(d.message), d.dismiss()))
-    opened.on("request", lambda r: said.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
-    yield opened
-    opened.close()
-    assert said == []
+    tab = page(running, viewport={"width": 1280, "height": 900})
+    messages: list[str] = []
+    tab.on("console", lambda m: messages.append(m.text) if m.type in ("error", "warning") else None)
+    tab.on("pageerror", lambda e: messages.append(str(e)))
+    tab.on("dialog", lambda d: (messages.append(d.message), d.dismiss()))
+    tab.on("request", lambda r: messages.append(r.url) if not r.url.startswith(("file:", "data:")) else None)
+    yield tab
+    tab.close()
+    assert messages == []

@@ -57,19 +57,19 @@ COUNTS: dict[str, tuple[Run, int]] = {
 
 def canaries() -> list[str]:
     """Wrong counts of the canaries; empty if all are correct."""
-    wrong = []
-    for what, (run, expected) in COUNTS.items():
+    altered = []
+    for kind, (run, expected) in COUNTS.items():
         result = len(groups(witnesses.witnesses(run, CASE)))
         if result != expected:
-            wrong.append(f"groups: {what}: {result} counted, not {expected}")
+            altered.append(f"groups: {kind}: {result} counted, not {expected}")
     alone = under_confirmed(_run(ONE, required=2))
     if [(s.groups, s.required) for s in alone] != [(1, 2)] or under_confirmed(_run(ONE, TWO, required=2)):
-        wrong.append("groups: one of two required is not reported as too few")
-    return wrong
+        altered.append("groups: one of two required is not reported as too few")
+    return altered
 
 
 def _without(field: str) -> Any:
-    return lambda right: tuple(name for name in right if name != field)
+    return lambda original: tuple(name for name in original if name != field)
 
 
 FAULTS: dict[str, Seam] = {

@@ -37,8 +37,8 @@ def run() -> Run:
         for n in (10, 20, 40)
     )
     silent = dict.fromkeys(("value", "reference", "full", "difference", "uncertainty", "elements", "order", "mac"))
-    said = {"mode": 0, "family": "", "ordinal": 0, "version": "", "verdict": "not run", "reason": "not installed"}
-    absent = {(c.case, c.omega): replace(c, **said, **silent) for c in plain.cells if c.code == ABSENT}
+    message = {"mode": 0, "family": "", "ordinal": 0, "version": "", "verdict": "not run", "reason": "not installed"}
+    absent = {(c.case, c.omega): replace(c, **message, **silent) for c in plain.cells if c.code == ABSENT}
     return replace(plain, cells=(*(c for c in plain.cells if c.code != ABSENT), *absent.values()), levels=levels)
 
 

@@ -47,8 +47,8 @@ def files(deck_: Deck, azimuths: int = 4, omega: float = OMEGA, words: tuple[str
     """The files of ``linearised``."""
     lins = [small(without(lin, *words)) for lin in healthy(Machine(omega=omega), azimuths)]
     each = _set(lins)
-    made = Models(deck_, each, models.degrees(deck_, each), fields.points(deck_))
-    structure = made.structure()
+    deck_models = Models(deck_, each, models.degrees(deck_, each), fields.points(deck_))
+    structure = deck_models.structure()
     A = [structure.state_matrix(part, each) for part in models.matrices(structure, each, True, True)]
     return [replace(lin, A=a, decimals=9) for lin, a in zip(lins, A, strict=True)]
 

@@ -282,10 +282,10 @@ def _shown(run, folder: Path) -> None:
         pdf.render(text, folder)
     junit.render(run)
     json.dumps([data.first(run, "x"), *(data.of_case(run, case) for case in summary.cases(run))], allow_nan=False)
-    shown = io.StringIO()
-    with contextlib.redirect_stdout(LogSafe(shown)):  # pyright: ignore[reportArgumentType]
+    output = io.StringIO()
+    with contextlib.redirect_stdout(LogSafe(output)):  # pyright: ignore[reportArgumentType]
         report.show_tables(run)
-    assert not re.search(r"^\s*::|##\[", shown.getvalue(), re.MULTILINE)
+    assert not re.search(r"^\s*::|##\[", output.getvalue(), re.MULTILINE)
 
 
 def _command(path: Path, rng: random.Random) -> None:
@@ -323,11 +323,11 @@ def _command(path: Path, rng: random.Random) -> None:
         except SystemExit as ended:
             status = ended.code
     assert status in (0, 1, 2), f"status {status}: {str(words)[:LONGEST_LINE]}"
-    told = [line for line in err.getvalue().splitlines() if line]
+    message = [line for line in err.getvalue().splitlines() if line]
     assert "Traceback" not in err.getvalue()
     if status == 2:
-        assert told, f"nothing is said of {str(words)[:LONGEST_LINE]}"
-        assert len(told[-1]) < LONGEST_LINE, f"{len(told[-1])} characters: {told[-1][:LONGEST_LINE]}"
+        assert message, f"nothing is said of {str(words)[:LONGEST_LINE]}"
+        assert len(message[-1]) < LONGEST_LINE, f"{len(message[-1])} characters: {message[-1][:LONGEST_LINE]}"
 
 
 def trial(seed: int, number: int, folder: Path) -> tuple[str, str]:
@@ -356,8 +356,10 @@ def trial(seed: int, number: int, folder: Path) -> tuple[str, str]:
             take(kind, first, rng)
         return kind, ""
     except (CaseError, MatrixFileError, IncompleteError) as error:
-        told = str(error)
-        return kind, "" if "\n" not in told.strip() and len(told) < LONGEST_LINE else f"message: {told[:300]!r}"
+        message = str(error)
+        return kind, "" if "\n" not in message.strip() and len(
+            message
+        ) < LONGEST_LINE else f"message: {message[:300]!r}"
     except SlowError:
         return kind, f"more than {SECONDS:g} s"
     except Exception:
@@ -384,13 +386,13 @@ def batch(seed: int, first: int, last: int, progress: Path) -> None:
         for number in range(first, last):
             log.write(msgspec.json.encode({"begins": number}) + b"\n")
             began = time.monotonic()
-            kind, wrong = trial(seed, number, folder)
+            kind, altered = trial(seed, number, folder)
             most = 1024 * resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
-            if not wrong and most > MEMORY and most > peak:
-                wrong = f"{most >> 20} MB"
+            if not altered and most > MEMORY and most > peak:
+                altered = f"{most >> 20} MB"
             peak = max(peak, most)
             spent = time.monotonic() - began
-            log.write(msgspec.json.encode({"number": number, "kind": kind, "wrong": wrong, "seconds": spent}) + b"\n")
+            log.write(msgspec.json.encode({"number": number, "kind": kind, "wrong": altered, "seconds": spent}) + b"\n")
 
 
 def run(count: int, seed: int, first: int = 0) -> list[dict]:
@@ -402,8 +404,10 @@ def run(count: int, seed: int, first: int = 0) -> list[dict]:
             progress = Path(name) / "progress"
             command = [sys.executable, __file__, "--batch", str(first), str(last), str(progress), "--seed", str(seed)]
             try:
-                done = subprocess.run(command, timeout=60 + BATCH * SECONDS / 5, stdin=subprocess.DEVNULL, check=False)
-                ended = f"process ended with {done.returncode}"
+                process = subprocess.run(
+                    command, timeout=60 + BATCH * SECONDS / 5, stdin=subprocess.DEVNULL, check=False
+                )
+                ended = f"process ended with {process.returncode}"
             except subprocess.TimeoutExpired:
                 ended = "hang"
             result = [json.loads(line) for line in progress.read_bytes().splitlines()] if progress.exists() else []

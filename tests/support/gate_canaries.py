@@ -44,15 +44,15 @@ AFTER: dict[str, Run] = {
 
 def canaries() -> list[str]:
     """Expected reports of history and gate that are missing; empty if all are correct."""
-    wrong = []
+    altered = []
     comparison = _compared(BEFORE, BEFORE)
     if comparison is None or not comparison.passed(strict=True) or not comparison.after.cells:
-        wrong.append("gate: a run against itself does not pass")
-    for what, after in AFTER.items():
+        altered.append("gate: a run against itself does not pass")
+    for kind, after in AFTER.items():
         comparison = _compared(BEFORE, after)
         if comparison is None or comparison.passed(strict=True):
-            wrong.append(f"gate: not listed: {what}")
-    return wrong
+            altered.append(f"gate: not listed: {kind}")
+    return altered
 
 
 def _compared(before: Run, after: Run) -> Comparison | None:
@@ -71,9 +71,9 @@ def _compared(before: Run, after: Run) -> Comparison | None:
 def _entry(**changes: Any) -> Any:
     """Set these fields in every point of an entry."""
 
-    def make(right: Any) -> Any:
+    def make(original: Any) -> Any:
         def wrong(*args: Any) -> Entry:
-            solution = right(*args)
+            solution = original(*args)
             return replace(solution, cells=tuple(_point(p, **changes) for p in solution.cells))
 
         return wrong
@@ -86,23 +86,23 @@ def _point(point: Any, **changes: Any) -> Any:
     return type(point)(**{**values, **changes})
 
 
-def _rounded(right: Any) -> Any:
+def _rounded(original: Any) -> Any:
     def wrong(*args: Any) -> Entry:
-        solution = right(*args)
+        solution = original(*args)
         return replace(solution, cells=tuple(_point(p, value=p.value and round(p.value, 3)) for p in solution.cells))
 
     return wrong
 
 
-def _first_only(right: Any) -> Any:
-    return lambda *args: replace(solution := right(*args), cells=solution.cells[:1])
+def _first_only(original: Any) -> Any:
+    return lambda *args: replace(solution := original(*args), cells=solution.cells[:1])
 
 
-def _never(right: Any) -> Any:
+def _never(original: Any) -> Any:
     return lambda change: False
 
 
-def _none(right: Any) -> Any:
+def _none(original: Any) -> Any:
     return lambda old, now: []
 
 

@@ -47,8 +47,8 @@ def assert_same(tree: Tree, guess: Mapping[str, float] | None, expected: State, 
             if "without a guess, a steady state was found" not in str(error):
                 raise
             solution = STEADY(tree)
-        again = about(tree, solution, linear.names)
-        stiff = np.abs(again.K - linear.K).max(initial=0.0) <= 1e-8 * np.abs(linear.K).max(initial=0.0)
+        second = about(tree, solution, linear.names)
+        stiff = np.abs(second.K - linear.K).max(initial=0.0) <= 1e-8 * np.abs(linear.K).max(initial=0.0)
         alike = drifts and np.allclose(_shape(solution), _shape(expected), rtol=1e-8, atol=0.0)
         assert stiff or alike, f"guess {k}: another state"
 

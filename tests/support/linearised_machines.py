@@ -390,12 +390,12 @@ def beamdyn(machine: NodeMachine, psi: float, frozen: bool = False, **options: o
     for b in (1, 2, 3):
         for node in range(n):
             speed = {"translational Y": -o * machine.radius * (node + 1) / n, "rotational X": o}
-            for what, unit in (("translational", "m"), ("rotational", "rad")):
+            for kind, unit in (("translational", "m"), ("rotational", "rad")):
                 for axis in "XYZ":
-                    tail = f"finite element node {node + 2} {order} {what} displacement in {axis}, "
+                    tail = f"finite element node {node + 2} {order} {kind} displacement in {axis}, "
                     names.append((f"BD_{b} {tail}", unit, True, 0.0))
                     rates.append(
-                        (f"BD_{b} First time derivative of {tail}", f"{unit}/s", True, speed.get(f"{what} {axis}", 0.0))
+                        (f"BD_{b} First time derivative of {tail}", f"{unit}/s", True, speed.get(f"{kind} {axis}", 0.0))
                     )
     rows = tuple(Row(text + unit, flag, value) for text, unit, flag, value in (*names, *rates))
     out = Lin(psi % (2 * np.pi), o, rows, machine.A(psi, frozen), decimals=6)

@@ -32,9 +32,9 @@ def missing(text: str, reader: Any) -> list[str]:
     """Headings, paragraphs and table cells of the Markdown whose text is not in the PDF."""
     elsewhere = words(reader)
     inlines = [token for token in document.parse(text).tokens if token.type == "inline"]
-    said = [document.words(t) for t in inlines if not any(child.type == "image" for child in t.children or ())]
-    assert said
-    return [text for text in said if "".join(text.split()) not in elsewhere]
+    message = [document.words(t) for t in inlines if not any(child.type == "image" for child in t.children or ())]
+    assert message
+    return [text for text in message if "".join(text.split()) not in elsewhere]
 
 
 def annotations(reader: Any) -> list[Any]:

@@ -136,20 +136,20 @@ def test_margins_at_the_ends_and_the_least_are_those_of_the_closed_form() -> Non
 def test_a_margin_is_judged_by_what_the_user_asks() -> None:
     """Flap at 2 rad/s is √10 rad/s, 58 % above 1P."""
     exact = np.sqrt(10.0) / 2.0 - 1.0
-    for margin, kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
+    for margin, is_kept in ((exact - 1e-6, True), (exact + 1e-6, False)):
         (result,) = (m for m in diagram(margin=RequiredMargin(margin), per_rev=(1,)).margins if m.track == 0)
-        assert result.kept is kept
+        assert result.kept is is_kept
 
 
 def test_a_margin_in_hertz_is_the_distance_itself() -> None:
     """Flap √(4 + 1.5 Ω²) at 1 and 2 rad/s: 1.3452 and 1.1623 rad/s above 1P, 0.18498 Hz at the nearer end."""
     ends = [np.sqrt(4 + 1.5 * o**2) - o for o in (1.0, 2.0)]
     exact = ends[1] / (2 * np.pi)
-    for text, kept in ((f"{exact - 1e-6}Hz", True), (f"{exact + 1e-6} Hz", False), (f"{ends[1] - 1e-6}rad/s", True)):
+    for text, is_kept in ((f"{exact - 1e-6}Hz", True), (f"{exact + 1e-6} Hz", False), (f"{ends[1] - 1e-6}rad/s", True)):
         result = diagram(margin=required_margin(text), per_rev=(1,))
         (flap,) = (m for m in result.margins if m.track == 0)
         assert (flap.low, flap.high) == pytest.approx(ends, rel=1e-9)
-        assert flap.kept is kept
+        assert flap.kept is is_kept
     assert "stays at least 0.1 Hz away" in verdict(diagram(margin=required_margin("0.1Hz"), per_rev=(1,)), RAD_S)
     margins = next(s for s in sheets(result, RAD_S) if s.title.startswith("Margins"))
     assert margins.rows[0][1] == "+1.35…+1.16"
@@ -272,20 +272,20 @@ def texts(figure: Figure) -> list[str]:
 
 
 def test_the_figure_names_modes_rays_the_range_and_the_veering(veering: Campbell) -> None:
-    said = texts(draw(veering, RPM, "oscillators"))
-    assert {"1P", "2P", "3P", "operating"} <= set(said)
+    labels = texts(draw(veering, RPM, "oscillators"))
+    assert {"1P", "2P", "3P", "operating"} <= set(labels)
     for label in ("flapwise 1 → edgewise", "edgewise 1 → flapwise", "flapwise 2"):
-        assert any(text.startswith(f"{label}  ") for text in said)
-    gap = next(text for text in said if text.startswith("veering\n"))
+        assert any(text.startswith(f"{label}  ") for text in labels)
+    gap = next(text for text in labels if text.startswith("veering\n"))
     exact = (np.sqrt(EDGE + 1.5) - np.sqrt(EDGE - 1.5)) / (2 * np.pi)
     assert gap == f"veering\ngap {exact:.2g} Hz"
 
 
 def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> None:
-    shown = encounters.draw(veering, RPM, "close")
-    assert shown
-    assert len(shown.axes) == len(veering.encounters) == 1
-    assert shown.axes[0].get_title(loc="left") == f"veering, {np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi:.4g} rpm"
+    figure = encounters.draw(veering, RPM, "close")
+    assert figure
+    assert len(figure.axes) == len(veering.encounters) == 1
+    assert figure.axes[0].get_title(loc="left") == f"veering, {np.sqrt((EDGE - FLAP) / 2) * 30 / np.pi:.4g} rpm"
     many = encounters.draw(replace(veering, encounters=veering.encounters * 12), RPM, "close")
     assert many
     assert len(many.axes) == encounters.MAX_PANELS
@@ -295,9 +295,9 @@ def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> 
 
 def test_labels_at_the_lines_ends_do_not_lie_on_each_other() -> None:
     close = lambda omega: replace(southwell(omega), frequencies=np.array([5.0, 5.01]))  # noqa: E731
-    shown = draw(campbell(BLADE, CampbellRequest((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
-    shown.canvas.draw()
-    labels = [t for t in shown.findobj(Text) if t.get_text().startswith(("flapwise 1 ", "edgewise 1 "))]  # type: ignore[attr-defined]
+    figure = draw(campbell(BLADE, CampbellRequest((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
+    figure.canvas.draw()
+    labels = [t for t in figure.findobj(Text) if t.get_text().startswith(("flapwise 1 ", "edgewise 1 "))]  # type: ignore[attr-defined]
     boxes = [t.get_window_extent() for t in labels]
     assert len(boxes) == 2
     assert not boxes[0].overlaps(boxes[1])
@@ -310,10 +310,10 @@ def test_the_figures_bytes_depend_on_its_numbers_alone(veering: Campbell, tmp_pa
 
 
 def test_the_same_figure_without_an_operating_range_judges_nothing() -> None:
-    said = texts(draw(diagram(operating=None), RPM, "plain"))
-    assert "operating" not in said
-    assert "resonance in operation" not in said
-    assert "resonance" in said
+    labels = texts(draw(diagram(operating=None), RPM, "plain"))
+    assert "operating" not in labels
+    assert "resonance in operation" not in labels
+    assert "resonance" in labels
 
 
 def test_colours_of_pure_motions_are_their_families_and_of_mixtures_between() -> None:

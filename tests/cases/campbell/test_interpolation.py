@@ -28,11 +28,11 @@ EXACT = np.repeat([54.18, 171.94, 384.40, 697.24, 1112.28], 2)
 @pytest.mark.parametrize("stations", [17, 33, 65])
 def test_the_estimate_is_the_error_against_many_stations(stations: int) -> None:
     """Within its factor of safety and 15 %; with many stations the guide's values are met within 0.04 %."""
-    fine, given = (mesh_modes(pyramid(n), 0.0, 200, 10).frequencies for n in (2001, stations))
+    fine, computed = (mesh_modes(pyramid(n), 0.0, 200, 10).frequencies for n in (2001, stations))
     np.testing.assert_allclose(fine / (2 * np.pi), EXACT, rtol=4e-4)
     error = interpolation_error(pyramid(stations), 10)
     assert error is not None
-    assert 0.85 * 1.25 < error.size / (given / fine - 1.0).max() < 1.15 * 1.25
+    assert 0.85 * 1.25 < error.size / (computed / fine - 1.0).max() < 1.15 * 1.25
 
 
 def test_33_stations_of_a_pyramid_are_warned_of_and_257_are_not() -> None:

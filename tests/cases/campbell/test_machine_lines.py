@@ -12,10 +12,10 @@ def line(frequencies: list[float], names: tuple[str, ...]) -> ModeLine:
     return ModeLine("tower", np.array(frequencies), names, np.ones(3), 0.0, (0, 0, 0))
 
 
-@pytest.mark.parametrize("shown", [3.1 + 2.0, 3.1 - 2.0, 2 * 2.0 - 3.1, 3.1])
-def test_a_line_keeps_its_frame_where_another_motion_is_larger(shown: float) -> None:
+@pytest.mark.parametrize("frequency", [3.1 + 2.0, 3.1 - 2.0, 2 * 2.0 - 3.1, 3.1])
+def test_a_line_keeps_its_frame_where_another_motion_is_larger(frequency: float) -> None:
     """A mode at 3.1 rad/s moves at 5.1 and 1.1, and at 0.9 = |3.1 − 4|, too, at Ω = 2 rad/s."""
-    frequencies = continued(line([3.0, shown, 3.2], ("tower", "differential", "tower")), OMEGA)
+    frequencies = continued(line([3.0, frequency, 3.2], ("tower", "differential", "tower")), OMEGA)
     np.testing.assert_allclose(frequencies, [3.0, 3.1, 3.2], rtol=1e-12)
 
 

@@ -55,8 +55,8 @@ def test_three_speeds_give_the_crossings_of_a_dense_sweep() -> None:
     for n in PER_REV:
         above = swept > n * dense[:, None]
         expected = [_meets(blade, n, int(mode), dense[k : k + 2]) for k, mode in np.argwhere(above[1:] != above[:-1])]
-        ours = sorted(r.omega for r in coarse_answer.resonances if r.per_rev == n)
-        np.testing.assert_allclose(ours, sorted(expected), rtol=1e-9)
+        actual = sorted(r.omega for r in coarse_answer.resonances if r.per_rev == n)
+        np.testing.assert_allclose(actual, sorted(expected), rtol=1e-9)
         number += len(expected)
     assert len(coarse_answer.resonances) == number >= 5
     assert not coarse_answer.unlisted
@@ -83,9 +83,9 @@ def test_the_crossings_of_a_straight_blade_are_the_eigenvalues_of_one_problem() 
         return 1.0 / np.sqrt(inverse[inverse > 1.0 / top**2])
 
     for n in PER_REV:
-        ours = [r.omega for r in coarse_answer.resonances if r.per_rev == n]
-        assert len(speeds(n, top)) == len(ours)
-        for omega in ours:
+        actual = [r.omega for r in coarse_answer.resonances if r.per_rev == n]
+        assert len(speeds(n, top)) == len(actual)
+        for omega in actual:
             assert np.abs(speeds(n, omega) / omega - 1).min() < 1e-9
 
 
@@ -148,8 +148,8 @@ def test_a_mode_that_is_lost_where_it_crosses_is_a_warning() -> None:
         return Modes(omega, np.array([5.0, 8.97]), shapes, 10, uncertainty=np.zeros(2))
 
     diagram = campbell(BLADE, CampbellRequest((0.0, 1.0, 1.8), modes=2, per_rev=(3, 6)), jump)
-    (lost,) = diagram.unlisted
-    assert (lost.per_rev, lost.number) == (6, 1)
-    assert lost.omega[0] < 1.495 <= lost.omega[1]
+    (crossing,) = diagram.unlisted
+    assert (crossing.per_rev, crossing.number) == (6, 1)
+    assert crossing.omega[0] < 1.495 <= crossing.omega[1]
     assert [(r.per_rev, r.omega) for r in diagram.resonances] == [(6, pytest.approx(5 / 6)), (3, pytest.approx(5 / 3))]
     assert any(note.startswith("6P: from 1.49") and "changes by +1 more" in note for note in notes(diagram, RAD_S))

@@ -78,8 +78,8 @@ class Answering(Core):
 
 def failures(code: Any, *, among: str = "") -> dict[str, str]:
     """Check → what it said, of those that fail; ``among`` names the only ones to ask."""
-    asked: tuple[Check, ...] = tuple(c for c in CHECKS if re.search(among, c.name))
-    return {str(o.check): o.reason for o in (judge(code, c) for c in asked) if o.verdict == "fail"}
+    checks: tuple[Check, ...] = tuple(c for c in CHECKS if re.search(among, c.name))
+    return {str(o.check): o.reason for o in (judge(code, c) for c in checks) if o.verdict == "fail"}
 
 
 @pytest.mark.slow

@@ -28,9 +28,9 @@ CODE = Code()
 def test_an_exit_is_a_failed_check_and_the_others_are_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "leaver.py").write_text(CODE.replace("count == 3", "False"), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
-    asked = [c for c in CHECKS if c.name in ("cantilever at rest", "counts", "shapes")]
-    first, counts, last = outcomes("leaver:CODE", asked, Limits(60.0))
-    assert [o.check for o in (first, counts, last)] == asked
+    checks = [c for c in CHECKS if c.name in ("cantilever at rest", "counts", "shapes")]
+    first, counts, last = outcomes("leaver:CODE", checks, Limits(60.0))
+    assert [o.check for o in (first, counts, last)] == checks
     assert (first.verdict, last.verdict) == ("pass", "pass")
     assert (counts.verdict, counts.reason) == ("fail", "the code's process ended with exit status 0")
 

@@ -15,8 +15,8 @@ REFERENCE = np.array([row[:4] for row in EVERY])
 NUMBERS = (1, 2, 3, 4)
 
 
-def name(given: np.ndarray, labels: tuple[int | str, ...] = NUMBERS) -> str:
-    return arithmetic(given, REFERENCE, labels, EVERY).name
+def name(frequencies: np.ndarray, labels: tuple[int | str, ...] = NUMBERS) -> str:
+    return arithmetic(frequencies, REFERENCE, labels, EVERY).name
 
 
 @pytest.mark.parametrize(
@@ -68,8 +68,8 @@ def test_random_numbers_are_no_arithmetic(size: float) -> None:
 
 def test_a_mode_without_any_number_is_no_reason_for_a_warning() -> None:
     """The mean over no speeds used to print one."""
-    given = 2 * np.pi * REFERENCE
-    given[:, 2] = np.nan
+    frequencies = 2 * np.pi * REFERENCE
+    frequencies[:, 2] = np.nan
     with warnings.catch_warnings():
         warnings.simplefilter("error")
-        assert name(given).startswith("constant ratio 2π")
+        assert name(frequencies).startswith("constant ratio 2π")

@@ -21,11 +21,11 @@ def cell(omega: float, mode: int, name: str, frequency: float, verdict: Verdict 
 
 def cells() -> list[Cell]:
     """Cells of a code that takes the hub radius as 0; its modes have the names of the right blade."""
-    right, wrong = (list(mesh_sweep(b, SPEEDS, 40, 5)) for b in (BLADE, replace(BLADE, hub_radius=0.0)))
+    correct, altered = (list(mesh_sweep(b, SPEEDS, 40, 5)) for b in (BLADE, replace(BLADE, hub_radius=0.0)))
     out = []
-    for modes, base in zip(wrong, right, strict=True):
-        named = numbered(families(participation(base, BLADE)))
-        out += [cell(modes.omega, k + 1, named[k], float(modes.frequencies[k])) for k in range(4)]
+    for modes, base in zip(altered, correct, strict=True):
+        names = numbered(families(participation(base, BLADE)))
+        out += [cell(modes.omega, k + 1, names[k], float(modes.frequencies[k])) for k in range(4)]
     return out
 
 

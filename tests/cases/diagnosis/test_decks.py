@@ -128,9 +128,9 @@ def test_openfasts_linearised_blade_is_named(tmp_path: Path) -> None:
     main.write_text(f'63.0 TipRad\n1.5 HubRad\n-2.5 PreCone(1)\n0 TipMass(1)\n17 BldNodes\n"{table.name}" BldFile(1)\n')
     (tmp_path / table.name).write_bytes(table.read_bytes())
     blade = readers.read(main)
-    given = 2.0 * np.pi * np.array([[0.67167, 1.07914, 1.98086]])
+    frequencies = 2.0 * np.pi * np.array([[0.67167, 1.07914, 1.98086]])
     labels = ["flapwise 1", "edgewise 1", "flapwise 2"]
-    diagnosis = diagnose(blade, [0.0], given, labels, deck=main)
+    diagnosis = diagnose(blade, [0.0], frequencies, labels, deck=main)
     assert (
         diagnosis.sentence
         == "agrees with Southwell's own solver in ElastoDyn's 3 assumed shapes on 17 nodes (0.012 % remains)"

@@ -53,11 +53,11 @@ def first_names(diagnosis: Diagnosis) -> list[str]:
 def test_mbwind_is_named_as_a_truncated_modal_basis() -> None:
     """The thesis code mbwind to 100 rpm, rad/s: flapwise 1, edgewise 1, flapwise 2, edgewise 2 (by frequency)."""
     speeds = np.array([0.0, 20.0, 50.0, 100.0]) * RPM
-    given = np.array([
+    frequencies = np.array([
         [4.289513, 6.814949, 12.417516, 25.307194], [5.124437, 6.965019, 13.438279, 25.701539],
         [7.562747, 8.078772, 17.963777, 27.695768], [9.467076, 13.710680, 28.873108, 34.045807],
     ])  # fmt: skip
-    diagnosis = diagnose(mbwind(), speeds, given)
+    diagnosis = diagnose(mbwind(), speeds, frequencies)
     assert diagnosis.cause is not None
     assert first_names(diagnosis) == ["in the 4 lowest modes at rest"]
 
@@ -65,9 +65,9 @@ def test_mbwind_is_named_as_a_truncated_modal_basis() -> None:
 def test_bladed_differs_at_rest_and_the_cause_is_open() -> None:
     """Bladed's numbers for the same blade, rad/s: EI or mass read differently, −0.7 % flapwise at rest."""
     speeds = np.array([1.0, 5.0, 10.0, 20.0]) * RPM
-    given = [[4.2606, 6.8065, 12.323, 25.265], [4.3144, 6.8150, 12.384, 25.288],
+    frequencies = [[4.2606, 6.8065, 12.323, 25.265], [4.3144, 6.8150, 12.384, 25.288],
              [4.4771, 6.8413, 12.574, 25.359], [5.0606, 6.9459, 13.314, 25.643]]  # fmt: skip
-    diagnosis = diagnose(mbwind(), speeds, given)
+    diagnosis = diagnose(mbwind(), speeds, frequencies)
     flap = diagnosis.modes[0]
     assert (flap.rest, flap.rest_reference) == pytest.approx((4.2584, 4.2892), abs=2e-4)
     assert (flap.slope, flap.slope_reference) == pytest.approx((1.755, 1.812), abs=2e-3)
@@ -122,8 +122,8 @@ def test_the_slope_of_a_formula_for_low_speed_is_seen_and_open() -> None:
     blade = uniform_blade("uniform", 0.5, 0.0, EA=2e7, GJ=3080.0, EI_y=2e3, EI_z=2e5, mass=0.8, I_y=8e-5, I_z=8e-3)
     rest = next(mesh_sweep(blade, [0.0], 40, 1)).frequencies[0]
     speeds = [0.0, 106.0, 400.0]
-    given = [[np.sqrt(rest**2 + 1.193 * omega**2)] for omega in speeds]
-    diagnosis = diagnose(blade, speeds, given, ["flapwise 1"])
+    frequencies = [[np.sqrt(rest**2 + 1.193 * omega**2)] for omega in speeds]
+    diagnosis = diagnose(blade, speeds, frequencies, ["flapwise 1"])
     assert diagnosis.largest < 2e-3
     assert "grows from rest with speed" in diagnosis.sentence
     assert diagnosis.cause is None

@@ -38,9 +38,9 @@ def test_a_mode_counts_twice_only_if_its_difference_moves_with_speed() -> None:
 
 
 def test_a_seeded_cause_is_named_and_what_has_no_effect_is_said() -> None:
-    wrong = replace(BLADE, hub_radius=0.0)
-    given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, PROBLEM.speeds, 40, 4)])
-    diagnosis = explain(PROBLEM, given)
+    altered = replace(BLADE, hub_radius=0.0)
+    frequencies = np.array([modes.frequencies[:4] for modes in mesh_sweep(altered, PROBLEM.speeds, 40, 4)])
+    diagnosis = explain(PROBLEM, frequencies)
     assert diagnosis.sentence.startswith("agrees with Southwell's own solver without hub radius (0.0000")
     assert diagnosis.without_effect == ("with precone reversed",)
     assert "without softening" not in diagnosis.sentence
@@ -48,8 +48,8 @@ def test_a_seeded_cause_is_named_and_what_has_no_effect_is_said() -> None:
 
 def test_a_pair_is_named_if_one_cause_does_not_suffice() -> None:
     prediction = spectra.effect(PROBLEM, (("without hub radius", 1.0), ("without softening", 1.0)))
-    given = spectra.reference(PROBLEM) * np.exp(prediction)
-    assert "without hub radius and without softening (" in explain(PROBLEM, given).sentence
+    frequencies = spectra.reference(PROBLEM) * np.exp(prediction)
+    assert "without hub radius and without softening (" in explain(PROBLEM, frequencies).sentence
 
 
 def test_equal_and_random_numbers_have_no_cause() -> None:
@@ -64,9 +64,9 @@ def test_equal_and_random_numbers_have_no_cause() -> None:
 def test_causes_that_the_numbers_do_not_tell_apart_are_stated_as_ties() -> None:
     near = Hypothesis("with a hub of 1 mm", lambda m, _: replace(m, blade=replace(m.blade, hub_radius=1e-3)))
     problem = Problem(BLADE, (0.0, 20.0), (1, 2, 3, 4), hypotheses={kind.name: kind for kind in (*FEW, near)})
-    wrong = replace(BLADE, hub_radius=0.0005)
-    given = np.array([modes.frequencies[:4] for modes in mesh_sweep(wrong, problem.speeds, 40, 4)])
-    diagnosis = explain(problem, given, 1e-4)
+    altered = replace(BLADE, hub_radius=0.0005)
+    frequencies = np.array([modes.frequencies[:4] for modes in mesh_sweep(altered, problem.speeds, 40, 4)])
+    diagnosis = explain(problem, frequencies, 1e-4)
     assert {cause.changes[0][0] for cause in (diagnosis.causes[0], *diagnosis.ties)} == {
         "without hub radius",
         "with a hub of 1 mm",
@@ -82,8 +82,8 @@ def test_arrays_of_other_shapes_are_refused() -> None:
 
 
 def test_modes_may_be_named_by_family() -> None:
-    wrong = replace(BLADE, hub_radius=0.0)
-    (modes,) = mesh_sweep(wrong, [20.0], 40, 4)
+    altered = replace(BLADE, hub_radius=0.0)
+    (modes,) = mesh_sweep(altered, [20.0], 40, 4)
     problem = replace(PROBLEM, speeds=(20.0,), labels=("edgewise 1", "flapwise 1"))
     order = [0, 1] if spectra.names(problem)[0][0] == "edgewise 1" else [1, 0]
     diagnosis = explain(problem, modes.frequencies[None, order])

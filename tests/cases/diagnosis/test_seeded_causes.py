@@ -114,8 +114,8 @@ def test_forty_seeded_causes_are_named_first() -> None:
     missed = []
     for name, seeds in SEEDS.items():
         for seed in seeds:
-            right = numbers(problem(name), seed)
-            diagnosis = explain(problem(name), right * (1.0 + NOISE * rng.standard_normal(right.shape)))
+            correct = numbers(problem(name), seed)
+            diagnosis = explain(problem(name), correct * (1.0 + NOISE * rng.standard_normal(correct.shape)))
             if not is_first(diagnosis, seed.name):
                 missed.append((name, seed.name, diagnosis.sentence))
     total = sum(map(len, SEEDS.values()))
@@ -126,7 +126,7 @@ def test_forty_seeded_causes_are_named_first() -> None:
 @pytest.mark.slow
 def test_numbers_altered_at_random_have_no_known_cause() -> None:
     rng = np.random.default_rng(44)
-    named = []
+    names = []
     count = 0
     for name in SEEDS:
         reference = spectra.reference(problem(name))
@@ -141,6 +141,6 @@ def test_numbers_altered_at_random_have_no_known_cause() -> None:
                 diagnosis = explain(problem(name), reference * np.exp(size * altered))
                 count += 1
                 if diagnosis.cause or diagnosis.arithmetic:
-                    named.append((name, size, diagnosis.sentence))
+                    names.append((name, size, diagnosis.sentence))
     assert count == 60
-    assert len(named) <= (1 - LEAST) * count, named
+    assert len(names) <= (1 - LEAST) * count, names

@@ -32,7 +32,7 @@ def test_a_mode_is_followed_where_frequencies_cross() -> None:
 
 
 @pytest.mark.parametrize(
-    ("given", "words"),
+    ("frequencies", "words"),
     [(lines((3.9, 6.8), (1.8, 0.4)), "offset at rest: stiffness or mass"),
      (lines((4.0, 7.0), (1.7, 0.3)), "grows from rest with speed"),
      (lines((3.8, 7.0), (1.75, 0.4)), "and a slope with speed"),
@@ -40,8 +40,8 @@ def test_a_mode_is_followed_where_frequencies_cross() -> None:
      (lines((4.0, 7.0), (-0.5, -0.4)), "fall with speed"),
      (RIGHT * (1 + 1e-5), "")],
 )  # fmt: skip
-def test_offset_and_slope_say_what_kind_of_cause_it_is(given: np.ndarray, words: str) -> None:
-    hint = indication(split(NAMES, SPEEDS, given, RIGHT), 4.0, 1e-4)
+def test_offset_and_slope_say_what_kind_of_cause_it_is(frequencies: np.ndarray, words: str) -> None:
+    hint = indication(split(NAMES, SPEEDS, frequencies, RIGHT), 4.0, 1e-4)
     assert words in hint
     assert bool(words) == bool(hint)
 

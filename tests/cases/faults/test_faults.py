@@ -89,16 +89,16 @@ def test_what_needs_a_code_that_is_absent_is_not_run_and_not_missed(monkeypatch:
 
 
 def test_a_fault_acts_in_its_own_thread_only_and_is_gone_afterwards() -> None:
-    right = verdict.unsigned
+    original = verdict.unsigned
     with seeding.seeded(((verdict, "unsigned", lambda _: lambda value: "wrong"),)):
         assert verdict.unsigned(0.1) == "wrong"
-        with ThreadPoolExecutor(1) as other:
-            assert other.submit(lambda: (threading.get_ident(), verdict.unsigned(0.1))).result()[1] == "10.00 %"
-    assert verdict.unsigned is right
+        with ThreadPoolExecutor(1) as pool:
+            assert pool.submit(lambda: (threading.get_ident(), verdict.unsigned(0.1))).result()[1] == "10.00 %"
+    assert verdict.unsigned is original
 
 
 def test_a_seam_that_is_gone_is_an_error() -> None:
-    with pytest.raises(AttributeError), seeding.seeded(((verdict, "nothing_like_it", lambda right: right),)):
+    with pytest.raises(AttributeError), seeding.seeded(((verdict, "nothing_like_it", lambda original: original),)):
         pass
 
 

@@ -41,11 +41,11 @@ def cell(verdict: Verdict, reference: float = 5.0, difference: float = 0.0) -> C
 
 
 def test_only_a_fail_detects() -> None:
-    right = [cell("pass")]
-    judgement = own.judged(CONTROL, right, [cell("fail", 5.2, -0.04)])
+    correct = [cell("pass")]
+    judgement = own.judged(CONTROL, correct, [cell("fail", 5.2, -0.04)])
     assert judgement.detected_by == ("beam, code, flapwise 1, 10 rad/s: fail",)
     assert judgement.change == -0.04
-    assert own.judged(CONTROL, right, [cell("inconclusive", 5.2, -0.04)]).missed
+    assert own.judged(CONTROL, correct, [cell("inconclusive", 5.2, -0.04)]).missed
     assert own.judged(CONTROL, [cell("fail")], [cell("fail", 5.2)]).missed
 
 
@@ -121,11 +121,11 @@ def test_a_twist_that_jumps_by_a_turn_is_detected_where_its_sign_changes() -> No
     fault = table.BY_NAME["twist across ±180°"]
     crossing, above = (replace(BLADE, twist=np.array(twist)) for twist in ([0.2, -0.1], [0.2, 0.1]))
     for blade, largest in ((crossing, 0.005), (above, 0.0)):
-        right = mesh_modes(blade, 10.0, 8, 2).frequencies
+        correct = mesh_modes(blade, 10.0, 8, 2).frequencies
         with seeded(fault.seams):
-            wrong = mesh_modes(blade, 10.0, 8, 2).frequencies
-        assert (abs(wrong / right - 1.0) >= largest).any()
-        assert (largest > 0) == (wrong != right).any()
+            altered = mesh_modes(blade, 10.0, 8, 2).frequencies
+        assert (abs(altered / correct - 1.0) >= largest).any()
+        assert (largest > 0) == (altered != correct).any()
 
 
 def test_every_fault_of_the_users_blade_follows_from_those_of_every_run() -> None:

@@ -45,12 +45,12 @@ def test_without_an_independent_code_nothing_is_claimed(subject: TurbineSubject)
 def test_every_fault_makes_a_code_fail_that_does_not_have_it(
     subject: TurbineSubject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    asked: list[float] = []
+    speeds: list[float] = []
 
     def answers(name: str, turbine: Turbine, runs: Sequence[Run], limits: Limits, version: str) -> list[TurbineModes]:
-        made = machine(turbine, Resolution())
-        asked.extend(omega for omega, _, _ in runs)
-        solved = [(n, turbine_modes(made, omega, count)) for omega, n, count in runs]
+        full_machine = machine(turbine, Resolution())
+        speeds.extend(omega for omega, _, _ in runs)
+        solved = [(n, turbine_modes(full_machine, omega, count)) for omega, n, count in runs]
         values = [np.asarray(1j * m.frequencies * (1.0 + 0.5 / n**2), np.complex128) for n, m in solved]
         return [TurbineModes(v, m.motions, n) for v, (n, m) in zip(values, solved, strict=True)]
 
@@ -63,7 +63,7 @@ def test_every_fault_makes_a_code_fail_that_does_not_have_it(
         assert all(c.endswith(": fail") for c in control.detected_by)
     silent = {c.control: c.without_effect for c in controls if c.without_effect}
     assert set(silent) <= {"turbine: gear ratio"}, silent  # the drivetrain's mode is above those compared
-    assert len(asked) == len(set(asked)) * 3  # each refinement once at speed, and once at rest
+    assert len(speeds) == len(set(speeds)) * 3  # each refinement once at speed, and once at rest
 
 
 @pytest.mark.slow

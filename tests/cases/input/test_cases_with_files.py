@@ -19,9 +19,9 @@ real = pytest.mark.skipif(not os.environ.get(FILES), reason=f"set {FILES} to a f
 
 
 def southwell(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(arguments)
-    return int(ended.value.code or 0)
+    return int(exit_info.value.code or 0)
 
 
 @pytest.mark.parametrize("name", NAMES)

@@ -32,8 +32,8 @@ def test_what_is_mutated_is_right_before(folder: Path, kind: str) -> None:
 @pytest.mark.parametrize("first", range(0, TRIALS, 50))
 def test_mutated_input_is_refused_in_one_line_or_makes_sense(folder: Path, first: int) -> None:
     for number in range(first, first + 50):
-        kind, wrong = fuzz.trial(SEED, number, folder)
-        assert not wrong, f"seed {SEED}, trial {number}, {kind}: {wrong}"
+        kind, problem = fuzz.trial(SEED, number, folder)
+        assert not problem, f"seed {SEED}, trial {number}, {kind}: {problem}"
 
 
 def test_a_trial_notices(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -74,6 +74,6 @@ def test_a_process_that_dies_is_told_and_the_rest_goes_on(tmp_path: Path, monkey
 
 @pytest.mark.slow
 def test_the_script_runs_alone() -> None:
-    done = subprocess.run([sys.executable, fuzz.__file__, "5", "--seed", "3"], capture_output=True, text=True)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "seed 3: 5 trials, 0 wrong" in done.stdout
+    process = subprocess.run([sys.executable, fuzz.__file__, "5", "--seed", "3"], capture_output=True, text=True)
+    assert process.returncode == 0, process.stdout + process.stderr
+    assert "seed 3: 5 trials, 0 wrong" in process.stdout

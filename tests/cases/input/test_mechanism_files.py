@@ -43,21 +43,21 @@ def test_the_example_in_toml_is_the_one_by_hand() -> None:
     by_hand = mb.solve(runpy.run_path(str(EXAMPLES / "hinged_blade.py"))["hinged_blade"]())
     read = library.mechanism(HINGED).solve()
     for name in "MCK":
-        theirs, ours = getattr(read.linear, name), getattr(by_hand.linear, name)
-        np.testing.assert_allclose(theirs, ours, rtol=1e-12, atol=1e-12 * np.abs(ours).max())
+        expected, actual = getattr(read.linear, name), getattr(by_hand.linear, name)
+        np.testing.assert_allclose(expected, actual, rtol=1e-12, atol=1e-12 * np.abs(actual).max())
 
 
 def test_the_example_on_the_page_of_mechanisms_prints_what_it_says(capsys) -> None:
     """And is the one in the module's own words: lag Ω √(e S/I), c/(2 I ω)."""
     page = (EXAMPLES.parent / "docs" / "mechanisms.md").read_text(encoding="utf-8")
     (block,) = re.findall(r"```python\n(.*?)```", page, re.S)
-    said = re.search(r"# ([\d.]+) rad/s, ([\d.]+) of critical", block)
+    message = re.search(r"# ([\d.]+) rad/s, ([\d.]+) of critical", block)
     exec(block, {})
     frequency, ratio = map(float, re.findall(r"[\d.]+", capsys.readouterr().out))
     lag = 30.0 * np.sqrt(0.3 * 80.0 / 210.0)
     assert (frequency, ratio) == (pytest.approx(lag, rel=1e-6), pytest.approx(600.0 / (2 * 210.0 * lag), rel=1e-6))
-    assert said
-    assert (said[1], said[2]) == (f"{frequency:.2f}", f"{ratio:.3f}")
+    assert message
+    assert (message[1], message[2]) == (f"{frequency:.2f}", f"{ratio:.3f}")
     assert "0.141 of critical" in (mb.__doc__ or "")
 
 
@@ -258,10 +258,10 @@ def test_what_only_solving_shows_names_the_file_too(tmp_path: Path) -> None:
 
 
 def run(capsys, *arguments: str) -> tuple[int, str, str]:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(arguments)
     out, err = capsys.readouterr()
-    return int(ended.value.code or 0), out, err
+    return int(exit_info.value.code or 0), out, err
 
 
 def test_the_command_prints_everything(capsys) -> None:

@@ -131,20 +131,20 @@ LINE = "not used: BlPitch (largest 3 deg, elastodyn_main.dat)"
     ],
 )
 def test_every_command_lists_them_once(tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str) -> None:
-    status, shown, _ = southwell(command.format(file=DATA / "elastodyn_main.dat", out=tmp_path), capsys)
+    status, output, _ = southwell(command.format(file=DATA / "elastodyn_main.dat", out=tmp_path), capsys)
     assert status == 0
-    assert shown.count(LINE) == 1
+    assert output.count(LINE) == 1
     for name in EXPECTED["elastodyn_main.dat"]:
-        assert shown.count(f"not used: {name} (") == 1
+        assert output.count(f"not used: {name} (") == 1
     page = tmp_path / "c" / "campbell.md"
     assert not page.exists() or page.read_text().replace("\\", "").count(LINE.removeprefix("not used: ")) == 1
 
 
 def test_beside_json_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
     line = f"modes {DATA / 'elastodyn_main.dat'} --rpm 0 --modes 2 --elements 5 --json"
-    status, shown, err = southwell(line, capsys)
+    status, output, err = southwell(line, capsys)
     assert status == 0
-    assert len(json.loads(shown)) == 2
+    assert len(json.loads(output)) == 2
     assert err.replace("\n", " ").count("not used: BlPitch") == 1
 
 

@@ -102,8 +102,8 @@ def test_windio_1_with_coupled_zero_shear_is_refused(tmp_path: Path) -> None:
 def test_yaml_whose_anchor_is_used_again(tmp_path: Path) -> None:
     path = written(tmp_path / "b.yaml", samples()[1])
     plain = readers.read(path)
-    again = "one: &x [1, 2]\ntwo: *x\nthree: &x [3, 4]\nfour: *x\n"
-    path.write_text(again + path.read_text())
+    second = "one: &x [1, 2]\ntwo: *x\nthree: &x [3, 4]\nfour: *x\n"
+    path.write_text(second + path.read_text())
     assert_same(readers.read(path), plain)
     from southwell.cases.input.readers import text, yaml_fields
 
@@ -118,9 +118,9 @@ def test_yaml_with_an_alias_of_nothing_is_refused(tmp_path: Path) -> None:
 
 
 def test_bmodes_says_its_speed(capsys: pytest.CaptureFixture[str]) -> None:
-    status, shown, _ = southwell(f"modes {DATA / 'bmodes.bmi'} --modes 1 --elements 5 --json", capsys)
+    status, output, _ = southwell(f"modes {DATA / 'bmodes.bmi'} --modes 1 --elements 5 --json", capsys)
     assert status == 0
-    (row,) = json.loads(shown)
+    (row,) = json.loads(output)
     assert row["omega_rad_s"] == pytest.approx(10 * np.pi / 30)
 
 

@@ -46,8 +46,8 @@ def test_every_code_declares_all_of_its_origin(name: str) -> None:
 
 def test_known_overcounts_are_one_group() -> None:
     declared = {name: registry.code(name).independence for name in BLADE_CODES}
-    made = [Origin("beam", name, **asdict(d)) for name, d in declared.items() if d]
-    result = count(run(*made))
+    origins = [Origin("beam", name, **asdict(d)) for name, d in declared.items() if d]
+    result = count(run(*origins))
     assert ("exudyn-ancf", "exudyn-beam", "exudyn-tree") in result
     assert ("assumed-modes", "exact-beam", "southwell-equation", "yoo-shin") in result
     assert ("sharpy",) in result  # its sections are those of the adapters' reference line, not core's

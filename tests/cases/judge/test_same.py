@@ -14,8 +14,8 @@ BLADE = uniform_blade("beam", 6.0, 0.6, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, ma
 
 def test_the_larger_of_stated_and_seen_rounding_counts() -> None:
     answer = of_blade(mesh_modes(BLADE, 10.0, 8, 4))
-    again = [replace(answer, values=answer.values * (1.0 + 1e-9))]
-    seen = rounding(answer, again)
-    assert (seen > 1e-9).all()
+    second = [replace(answer, values=answer.values * (1.0 + 1e-9))]
+    observed = rounding(answer, second)
+    assert (observed > 1e-9).all()
     stated = np.array([1e-3, 0.0, 1e-15, 1e-5])
-    assert rounding(replace(answer, rounding=stated), again).tolist() == np.maximum(seen, stated).tolist()
+    assert rounding(replace(answer, rounding=stated), second).tolist() == np.maximum(observed, stated).tolist()

@@ -23,8 +23,8 @@ TARGET = 1e-3
     ],
 )
 def test_difference_and_uncertainty_against_target(difference: float, uncertainty: float | None, verdict: str) -> None:
-    got, reason = judge(difference, uncertainty, TARGET)
-    assert got == verdict
+    answer, reason = judge(difference, uncertainty, TARGET)
+    assert answer == verdict
     assert bool(reason) == (verdict != "pass")
 
 

@@ -89,19 +89,21 @@ def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str
 
 
 def test_a_disagreement_outweighs_an_open_answer() -> None:
-    wrong = cell("alpha", mode=2, difference=2e-3, verdict="fail")
+    altered = cell("alpha", mode=2, difference=2e-3, verdict="fail")
     unknown = cell("alpha", mode=3, uncertainty=None, verdict="inconclusive")
-    (witness,) = witnesses(run(cell("alpha"), unknown, wrong), "beam")
+    (witness,) = witnesses(run(cell("alpha"), unknown, altered), "beam")
     assert witness.standing == "disagrees"
 
 
 def test_agreement_of_adapters_theories_alone_is_said() -> None:
     """The programs are foreign, but what they solve is not."""
-    made = run(cell("alpha"), cell("beta"))
-    ours = replace(made, origins=tuple(replace(o, theory=f"forms of {o.code}, {ADAPTERS}") for o in made.origins))
-    mixed = replace(made, origins=(ours.origins[0], made.origins[1]))
-    said = [reported.headline(r) for r in (made, mixed, ours)]
-    assert ["No foreign theory agrees for beam" in line for line in said] == [False, False, True]
+    first_run = run(cell("alpha"), cell("beta"))
+    actual = replace(
+        first_run, origins=tuple(replace(o, theory=f"forms of {o.code}, {ADAPTERS}") for o in first_run.origins)
+    )
+    mixed = replace(first_run, origins=(actual.origins[0], first_run.origins[1]))
+    headlines = [reported.headline(r) for r in (first_run, mixed, actual)]
+    assert ["No foreign theory agrees for beam" in line for line in headlines] == [False, False, True]
 
 
 def test_a_measurement_is_no_witness() -> None:
@@ -157,11 +159,11 @@ def test_on_a_terminal_of_any_width_nothing_of_the_matrix_is_cut_off(width: int)
     console = Console(width=width, file=StringIO(), highlight=False)
     for table in terminal.matrix(run, width):
         console.print(table)
-    shown = console.file.getvalue()  # type: ignore[attr-defined]
-    assert "…" not in shown
-    assert all(len(line) <= width for line in shown.splitlines())
+    output = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in output
+    assert all(len(line) <= width for line in output.splitlines())
     for size in ("0", "0.0012", "0.079", "0.9", "5.1", "19", "58", "145", "323", "656", "1234", "2186"):
-        assert re.search(rf"(?<![\d.]){re.escape(size)}(?![\d.])", shown), size
+        assert re.search(rf"(?<![\d.]){re.escape(size)}(?![\d.])", output), size
 
 
 def test_rows_that_do_not_say_leave_it_out() -> None:

@@ -29,10 +29,10 @@ pytestmark = pytest.mark.skipif(not FOLDER, reason="set SOUTHWELL_LINEARISED to 
 _BLADE = re.compile(r"(blade\s+|blade root |PitchBearing|BD_|BD)(\d)", re.IGNORECASE)
 
 
-def ordered(states: tuple[State, ...], kept: list[int]) -> tuple[list[int], int]:
+def ordered(states: tuple[State, ...], indices: list[int]) -> tuple[list[int], int]:
     """States of one kind, fixed ones first, then triplets of blades; and the number of triplets."""
-    plain = {re.sub(r"\s*\([^)]*\)", "", states[k].text): k for k in kept if states[k].rotating}
-    fixed = [k for k in kept if not states[k].rotating]
+    plain = {re.sub(r"\s*\([^)]*\)", "", states[k].text): k for k in indices if states[k].rotating}
+    fixed = [k for k in indices if not states[k].rotating]
     triplets: list[int] = []
     for text in list(plain):
         match = _BLADE.search(text)
@@ -47,16 +47,16 @@ def ordered(states: tuple[State, ...], kept: list[int]) -> tuple[list[int], int]
     return fixed + triplets, len(triplets) // 3
 
 
-def eigenvalues(each: AzimuthSet) -> NDArray[np.complex128]:
+def eigenvalues(azimuth_set: AzimuthSet) -> NDArray[np.complex128]:
     """Of the mean of the matrices in the fixed frame, by ACDC's method."""
-    rates = [k for k, state in enumerate(each.states) if state.rate]
-    first = [k for k, state in enumerate(each.states) if state.order == 1]
-    q = [k for k in range(len(each.states)) if k not in rates and k not in first]
-    (x2, n2), (x2dot, _), (x1, n1) = (ordered(each.states, kept) for kept in (q, rates, first))
+    rates = [k for k, state in enumerate(azimuth_set.states) if state.rate]
+    first = [k for k, state in enumerate(azimuth_set.states) if state.order == 1]
+    q = [k for k in range(len(azimuth_set.states)) if k not in rates and k not in first]
+    (x2, n2), (x2dot, _), (x1, n1) = (ordered(azimuth_set.states, kept) for kept in (q, rates, first))
     order = [*x2, *x2dot, *x1]
     f2, f1 = len(x2) - 3 * n2, len(x1) - 3 * n1
     total = np.zeros((len(order), len(order)))
-    for A, psi, file in zip(each.A, each.azimuths, each.files, strict=True):
+    for A, psi, file in zip(azimuth_set.A, azimuth_set.azimuths, azimuth_set.files, strict=True):
         angles, omega = psi + 2 * np.pi * np.arange(3) / 3, file.rotor_speed
         c, s, one = np.cos(angles), np.sin(angles), np.ones(3)
         t, t2, t3 = (np.stack(columns, axis=-1) for columns in ((one, c, s), (0 * one, -s, c), (0 * one, -c, -s)))
@@ -73,7 +73,7 @@ def eigenvalues(each: AzimuthSet) -> NDArray[np.complex128]:
         L[n : 2 * n, :n], R[n : 2 * n, :n] = omega * T2, omega**2 * T3
         inverse = np.linalg.inv(cast("Array", block_diag(T1, T1, T1q)))
         total += inverse @ (A[np.ix_(order, order)] @ L - R)
-    return cast("NDArray[np.complex128]", np.linalg.eigvals((total / len(each.A)).astype(np.complex128)))
+    return cast("NDArray[np.complex128]", np.linalg.eigvals((total / len(azimuth_set.A)).astype(np.complex128)))
 
 
 @pytest.mark.parametrize(
@@ -86,10 +86,10 @@ def eigenvalues(each: AzimuthSet) -> NDArray[np.complex128]:
     ],
 )
 def test_frequencies_and_damping_are_acdcs(pattern: str) -> None:
-    (each,) = collect([read(path) for path in sorted(Path(FOLDER or "").glob(pattern))])
-    values = eigenvalues(each)
+    (azimuth_set,) = collect([read(path) for path in sorted(Path(FOLDER or "").glob(pattern))])
+    values = eigenvalues(azimuth_set)
     values = values[values.imag > 1e-6 * max(1.0, np.abs(values).max())]
-    own = np.array([mode.eigenvalue for mode in spectrum(each, each.A).modes], dtype=np.complex128)
+    own = np.array([mode.eigenvalue for mode in spectrum(azimuth_set, azimuth_set.A).modes], dtype=np.complex128)
     own = own[own.imag > 1e-6 * max(1.0, np.abs(own).max())]
     assert len(own) == len(values)
     distance = np.abs(own[:, None] - values[None, :]).min(axis=1) / np.abs(own)

@@ -120,15 +120,15 @@ def structural_control(stiffness: float = 0.1) -> str:
 
 
 def test_idle_directions_of_a_structural_control_are_no_defect() -> None:
-    judged = judge_set(azimuth_set("case", [lin_file(structural_control())]))
-    assert "kinematic rows" not in {finding.name for finding in judged.findings}
-    assert len(judged.azimuth_set.pairs) == 16
-    control = next(mode for mode in judged.modes if mode.name == "Nacelle StC 1 displacement X")
+    judged_set = judge_set(azimuth_set("case", [lin_file(structural_control())]))
+    assert "kinematic rows" not in {finding.name for finding in judged_set.findings}
+    assert len(judged_set.azimuth_set.pairs) == 16
+    control = next(mode for mode in judged_set.modes if mode.name == "Nacelle StC 1 displacement X")
     assert control.frequency == pytest.approx(np.sqrt(0.1) / (2 * np.pi), rel=1e-9)
     # a row that is zero while its column is not is still a defect
     broken = structural_control().replace("  0.000E+00  0.000E+00  1.000E+00  0.000E+00\n", "  0.000E+00" * 4 + "\n")
-    judged = judge_set(azimuth_set("case", [lin_file(broken)]))
-    assert "kinematic rows" in {finding.name for finding in judged.findings}
+    judged_set = judge_set(azimuth_set("case", [lin_file(broken)]))
+    assert "kinematic rows" in {finding.name for finding in judged_set.findings}
 
 
 def test_a_compressed_file_is_read(tmp_path: Path) -> None:
@@ -235,7 +235,7 @@ def test_azimuths_of_one_stem_are_one_set() -> None:
     assert [stem(Path(name)) for name in names] == ["a", "a", "b", "a.ED", "c", "alone"]
     faster = elastodyn(replace(MACHINE, omega=1.2), 0.0).text()
     sets = collect([lin_file(faster, "b.1.lin"), lin_file(name="a.2.lin"), lin_file(name="a.1.lin")])
-    assert [(each.name, len(each.files)) for each in sets] == [("a", 2), ("b", 1)]
+    assert [(azimuth_set.name, len(azimuth_set.files)) for azimuth_set in sets] == [("a", 2), ("b", 1)]
 
 
 def test_files_of_different_models_are_refused() -> None:

@@ -62,10 +62,13 @@ def test_modes_equal_those_of_a_direct_integration() -> None:
 def test_gravity_is_treated_by_floquet_theory() -> None:
     machine = Machine(gravity=60.0)
     exponents = floquet_exponents(machine)
-    each = as_set(healthy(machine, 12, decimals=9))
-    result = judge_set(each)
+    azimuth_set = as_set(healthy(machine, 12, decimals=9))
+    result = judge_set(azimuth_set)
     assert result.method == FLOQUET
-    mean = {mode.name: distance(mode.eigenvalue, exponents, machine.omega) for mode in spectrum(each, each.A).modes}
+    mean = {
+        mode.name: distance(mode.eigenvalue, exponents, machine.omega)
+        for mode in spectrum(azimuth_set, azimuth_set.A).modes
+    }
     periodic = {mode.name: distance(mode.eigenvalue, exponents, machine.omega) for mode in result.modes}
     assert max(mean.values()) > 5e-4
     assert max(periodic.values()) < max(mean.values()) / 5
@@ -99,10 +102,10 @@ def test_the_uncertainty_covers_the_error_of_printed_digits(decimals: int) -> No
 
 def test_units_of_the_tower_do_not_change_the_modes() -> None:
     judgement, millimetres = judged(healthy(MACHINE)), judged(tower_in_millimetres())
-    for mode, other in zip(judgement.modes, millimetres.modes, strict=True):
-        assert mode.name == other.name
-        assert other.frequency == pytest.approx(mode.frequency, rel=1e-3)
-        assert other.confidence == pytest.approx(mode.confidence, abs=0.01)
+    for mode, counterpart in zip(judgement.modes, millimetres.modes, strict=True):
+        assert mode.name == counterpart.name
+        assert counterpart.frequency == pytest.approx(mode.frequency, rel=1e-3)
+        assert counterpart.confidence == pytest.approx(mode.confidence, abs=0.01)
 
 
 def test_frozen_nodes_give_the_modes_of_rotating_ones() -> None:
@@ -110,7 +113,7 @@ def test_frozen_nodes_give_the_modes_of_rotating_ones() -> None:
     assert coriolis_content(rotating) == pytest.approx(1.0, abs=1e-6)
     assert coriolis_content(frozen) == pytest.approx(0.0, abs=1e-6)
     expected = spectrum(rotating, rotating.A).modes[:12]
-    for mode, other in zip(expected, spectrum(frozen, rotated(frozen, frozen.A)).modes, strict=False):
-        assert other.frequency == pytest.approx(mode.frequency, rel=2e-5)
-    wrong = spectrum(frozen, frozen.A).modes[:12]
-    assert max(abs(w.frequency / m.frequency - 1) for w, m in zip(wrong, expected, strict=True)) > 0.01
+    for mode, counterpart in zip(expected, spectrum(frozen, rotated(frozen, frozen.A)).modes, strict=False):
+        assert counterpart.frequency == pytest.approx(mode.frequency, rel=2e-5)
+    altered = spectrum(frozen, frozen.A).modes[:12]
+    assert max(abs(w.frequency / m.frequency - 1) for w, m in zip(altered, expected, strict=True)) > 0.01

@@ -23,20 +23,20 @@ MOUNT = Mount(length=48.0, hub_radius=1.0)
 
 
 def subject(path: Path, mount: Mount, rpm: str = "12") -> Subject:
-    (made,) = subjects(Request((str(path),), rpm=rpm, mount=mount), lambda _: None)
-    return made
+    (subject_,) = subjects(Request((str(path),), rpm=rpm, mount=mount), lambda _: None)
+    return subject_
 
 
-def deck_columns(made: Subject, code: str = "pybmodes") -> list[Column]:
-    assert made.blade is not None
-    result = made.columns(describe([code], [made.blade]), Limits(), ())
+def deck_columns(subject_: Subject, code: str = "pybmodes") -> list[Column]:
+    assert subject_.blade is not None
+    result = subject_.columns(describe([code], [subject_.blade]), Limits(), ())
     return [column for column in result if column.code == "pybmodes-deck"]
 
 
-def cells(made: Subject) -> list[Cell]:
-    (column,) = deck_columns(made)
-    references = made.references([column])()
-    return column(made.points, references[column.effects])[0]
+def cells(subject_: Subject) -> list[Cell]:
+    (column,) = deck_columns(subject_)
+    references = subject_.references([column])()
+    return column(subject_.points, references[column.effects])[0]
 
 
 def test_a_right_reader_is_confirmed_from_end_to_end() -> None:
@@ -46,10 +46,10 @@ def test_a_right_reader_is_confirmed_from_end_to_end() -> None:
 
 
 def test_exchanged_stiffnesses_fail_the_code_that_reads_the_deck_itself(monkeypatch: pytest.MonkeyPatch) -> None:
-    right = elastodyn.section_stiffness
+    original = elastodyn.section_stiffness
 
     def exchanged(EA: float, GJ: float, EI_y: float, EI_z: float) -> object:
-        return right(EA, GJ, EI_z, EI_y)
+        return original(EA, GJ, EI_z, EI_y)
 
     monkeypatch.setattr(elastodyn, "section_stiffness", exchanged)
     assert "fail" in {c.verdict for c in cells(subject(SAMPLE, MOUNT))}

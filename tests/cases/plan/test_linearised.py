@@ -43,13 +43,13 @@ def fst(tmp_path: Path) -> Path:
 def test_modes_are_cells_with_the_parts_of_their_differences(fst: Path, tmp_path: Path) -> None:
     """The speed is that of the files. What is left of each difference is rounding and damping."""
     result = cells(fst, write(tmp_path, files(deck.read(fst))))
-    named = {f"{cell.family} {cell.ordinal}": cell for cell in result}
-    assert {"tower fore-aft 1", "flap collective 1", "edge forward whirl 1"} <= set(named)
+    by_name = {f"{cell.family} {cell.ordinal}": cell for cell in result}
+    assert {"tower fore-aft 1", "flap collective 1", "edge forward whirl 1"} <= set(by_name)
     assert {cell.omega for cell in result} == {2.5}
     compared = [cell for cell in result if cell.difference is not None]
     assert len(compared) >= 6
     assert {cell.verdict for cell in compared} <= {"pass", "known difference"}
-    assert "mode shapes +" in named["tower fore-aft 1"].reason
+    assert "mode shapes +" in by_name["tower fore-aft 1"].reason
 
 
 def test_files_with_a_defect_agree_with_nothing(fst: Path, tmp_path: Path) -> None:

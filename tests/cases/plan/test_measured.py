@@ -102,11 +102,11 @@ def test_more_uncertain_data_never_make_an_error_visible(ratio: float, u: float,
     def shown(data: float, of_inputs: float):
         return measured(head, 10.0, 0, reference(), Datum(ratio * EDGEWISE, data, of_inputs))
 
-    sure = shown(u, inputs)
+    uncertainty = shown(u, inputs)
     for vague in (shown(u + more, inputs), shown(u, inputs + more)):
-        assert vague.verdict == sure.verdict == "measured"
-        assert visible(vague) <= visible(sure)
-        assert ("not visible" in vague.reason) or ("not visible" not in sure.reason)
+        assert vague.verdict == uncertainty.verdict == "measured"
+        assert visible(vague) <= visible(uncertainty)
+        assert ("not visible" in vague.reason) or ("not visible" not in uncertainty.reason)
 
 
 def test_defaults_are_for_rows_without_their_own(tmp_path: Path) -> None:
@@ -183,9 +183,9 @@ def test_what_cannot_be_measured_is_bad_input(
     path = tmp_path / "rig.csv"
     path.write_text(text)
     arguments = ["verify", "park-cantilever", "--codes", "yoo-shin", "--add", f"rig={path}", *options]
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main([*arguments, "--out", str(tmp_path / "out")])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert words in line
     assert not (tmp_path / "out").exists()

@@ -39,9 +39,9 @@ def test_a_name_given_twice_is_one_line(
     names = {"ONE": "twin", "TWO": "twin", "EXACT": "exact-beam", "CORE": "southwell"}
     lines = [f"{key} = Counted({name!r})" for key, name in names.items()]
     (tmp_path / "twins.py").write_text("\n".join(["from counted import Counted", *lines]))
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["verify", *arguments.split(), "--out", "out"])
     out, err = capsys.readouterr()
-    assert (ended.value.code, out, err.count("\n")) == (2, "", 1)
+    assert (exit_info.value.code, out, err.count("\n")) == (2, "", 1)
     assert re.search(phrase, err)
     assert not (tmp_path / "out").exists()

@@ -36,16 +36,16 @@ EACH = [replace(EVERYTHING, **{f.name: getattr(DEFAULT, f.name)}) for f in field
 
 def parsed(line: str, monkeypatch: pytest.MonkeyPatch) -> Request:
     """The request that the command makes of a line."""
-    seen: list[Request] = []
+    requests: list[Request] = []
 
     def verify(request: Request, observer: object) -> Run:
-        seen.append(request)
+        requests.append(request)
         return Run(())
 
     monkeypatch.setattr(command, "verify", verify)
     with pytest.raises(SystemExit):
         app.main(shlex.split(line)[1:])
-    return replace(seen[0], execution=Execution())
+    return replace(requests[0], execution=Execution())
 
 
 @pytest.mark.parametrize("request_", [DEFAULT, EVERYTHING, replace(EVERYTHING, rpm=None, omega="0,10.5"), *EACH])

@@ -246,9 +246,9 @@ def test_what_is_not_of_the_run_is_bad_input(tmp_path: Path, case: str, text: st
 def test_bad_input_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, (case, text, words) = tmp_path / "results.csv", NOT_OF_THE_RUN[0]
     path.write_text(text)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["verify", case, "--codes", "yoo-shin", "--add", f"rig={path}", "--out", str(tmp_path / "out")])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     (line,) = capsys.readouterr().err.splitlines()
     assert words in line
     assert not (tmp_path / "out").exists()
@@ -294,10 +294,10 @@ def test_a_family_is_a_convention_only_where_core_has_mixed_modes(
     rows = read(tmp_path, HEAD + "1.0000, 5.35500, flapwise 1\n1.0000, 5.35500, 2").rows
     rows = [*rows, *read(tmp_path, HEAD + "1.0000, 6.50000, flapwise 1").rows]
     blade = library.load("park-cantilever").variants[0].blade
-    (named, numbered, wrong), _ = user_columns._rows(
+    (names, numbered, altered), _ = user_columns._rows(
         user_columns._of_a_program, head, blade, park().text.compare, rows, core
     )
-    assert [c.verdict for c in (named, wrong, numbered)] == [verdict, "fail", "pass"]
+    assert [c.verdict for c in (names, altered, numbered)] == [verdict, "fail", "pass"]
     if verdict == "inconclusive":
-        assert "not that of flapwise 1 but of mixed 2" in named.reason
-        assert "number among all modes" in named.reason
+        assert "not that of flapwise 1 but of mixed 2" in names.reason
+        assert "number among all modes" in names.reason

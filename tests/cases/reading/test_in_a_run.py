@@ -61,8 +61,8 @@ def in_this_process(name: str, blade: Blade, elements: Sequence[int], *_: object
 
 
 def exchange(patch: pytest.MonkeyPatch) -> None:
-    made = elastodyn.section_stiffness
-    patch.setattr(elastodyn, "section_stiffness", lambda EA, GJ, flap, edge: made(EA, GJ, edge, flap))
+    original = elastodyn.section_stiffness
+    patch.setattr(elastodyn, "section_stiffness", lambda EA, GJ, flap, edge: original(EA, GJ, edge, flap))
 
 
 def test_a_right_reader_is_confirmed(deck: Path, tmp_path: Path) -> None:
@@ -126,9 +126,9 @@ def test_a_csv_is_read_twice(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) ->
     offset = blades.offset
     monkeypatch.setattr(blades, "offset", lambda mass, ahead: offset(mass, -ahead))
     checks = checked(decks.csv(tmp_path), ["scikit-fem-reissner"], mount=Mount(length=20.0, hub_radius=1.0))
-    wrong = [c for c in checks.property_checks if c.verdict == "fail"]
-    assert {c.part for c in wrong if c.quantity == "reading"} == {"first moments of mass"}
-    assert not [c for c in wrong if c.quantity == "fingerprint"], "the models are those of the blade as read"
+    failures = [c for c in checks.property_checks if c.verdict == "fail"]
+    assert {c.part for c in failures if c.quantity == "reading"} == {"first moments of mass"}
+    assert not [c for c in failures if c.quantity == "fingerprint"], "the models are those of the blade as read"
 
 
 def test_a_wrong_sampling_of_core_is_named_for_core_alone(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -166,5 +166,5 @@ def test_properties_that_need_more_elements_are_one_line_for_each_code() -> None
     assert properties.lines(run) == [
         "Model of beam: 2 properties need more elements to be judged; the largest differs by −9.00 % (a, b)."
     ]
-    wrong = replace(run, property_checks=tuple(replace(r, verdict="fail", reason="wrong") for r in rows))
-    assert properties.lines(wrong) == ["Model of beam: wrong (a).", "Model of beam: wrong (b)."]
+    altered = replace(run, property_checks=tuple(replace(r, verdict="fail", reason="wrong") for r in rows))
+    assert properties.lines(altered) == ["Model of beam: wrong (a).", "Model of beam: wrong (b)."]

@@ -35,10 +35,10 @@ def blade(**changes: Any) -> Blade:
     z, y = 0.02 * S**2 / 10.0, -0.015 * S**2 / 10.0
     slope = np.gradient(z, S, edge_order=2) ** 2 + np.gradient(y, S, edge_order=2) ** 2
     x = S - np.concatenate([[0.0], np.cumsum(np.diff(S) * 0.5 * 0.5 * (slope[1:] + slope[:-1]))])
-    right = Blade(
+    correct = Blade(
         "wing", S, stiffness, mass, np.linspace(0.3, 0.0, 5), 1.5, np.stack([x, y, z], axis=1), 0.05, 0.03, TIP
     )
-    return replace(right, **changes)
+    return replace(correct, **changes)
 
 
 def checked(of: Blade) -> dict[str, PropertyCheck]:
@@ -78,17 +78,17 @@ def test_rigid_strains_are_stiff_in_both_descriptions() -> None:
     assert {r.verdict for r in checked(straight).values()} == {"pass"}
 
 
-def _tip_in_blade_axes(right: Any) -> Any:
+def _tip_in_blade_axes(original: Any) -> Any:
     def wrong(of: Blade, *args: Any, **kwargs: Any) -> Any:
         turned = invariance._turned(of.twist[-1])
-        return right(replace(of, tip_mass=turned @ of.tip_mass @ turned.T), *args, **kwargs)
+        return original(replace(of, tip_mass=turned @ of.tip_mass @ turned.T), *args, **kwargs)
 
     return wrong
 
 
-def _not_coned(right: Any) -> Any:
+def _not_coned(original: Any) -> Any:
     def wrong(of: Blade) -> Any:
-        out = right(of)
+        out = original(of)
         out[:3, 3] = [of.hub_radius, 0.0, 0.0]
         return out
 
@@ -96,8 +96,8 @@ def _not_coned(right: Any) -> Any:
 
 
 def _altered(**fields: Callable[[Blade], Any]) -> Any:
-    def make(right: Any) -> Any:
-        return lambda of, *args, **kwargs: right(
+    def make(original: Any) -> Any:
+        return lambda of, *args, **kwargs: original(
             replace(of, **{name: value(of) for name, value in fields.items()}), *args, **kwargs
         )
 
@@ -108,7 +108,7 @@ def _one_sign(i: int, j: int) -> Any:
     """An entry of the sections' inertia loses its sign."""
     entry = np.zeros((6, 6), dtype=bool)
     entry[i, j] = entry[j, i] = True
-    return lambda right: lambda of, s: np.where(entry, np.abs(right(of, s)), right(of, s))
+    return lambda original: lambda of, s: np.where(entry, np.abs(original(of, s)), original(of, s))
 
 
 MISTAKES = {
@@ -142,10 +142,10 @@ MISTAKES = {
 @pytest.mark.parametrize("name", MISTAKES)
 def test_a_mistake_of_a_convention_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     (owner, attribute, make), first = MISTAKES[name]
-    right = getattr(owner, attribute)
-    monkeypatch.setattr(owner, attribute, make(right))
+    original = getattr(owner, attribute)
+    monkeypatch.setattr(owner, attribute, make(original))
     if attribute == "discretize":
-        monkeypatch.setattr(refinement, attribute, make(right))
+        monkeypatch.setattr(refinement, attribute, make(original))
     kind = next(i for i in invariance.INVARIANCES if i.name == first)
     row = Invariances("wing", blade(), OMEGA, 2)._row(kind, [])
     assert row.verdict == "fail"
@@ -166,12 +166,12 @@ def test_a_change_ends_a_run_with_status_1() -> None:
         ordinal=1,
     )
     row = partial(PropertyCheck, "wing", "southwell", "1", "invariance")
-    wrong = row("stations split", 5.1, 5.0, "rad/s", 0.02, 1e-8, "fail", "stations split: mode 1 changes by +2.00 %")
-    run = Run((cell,), property_checks=(wrong,))
+    altered = row("stations split", 5.1, 5.0, "rad/s", 0.02, 1e-8, "fail", "stations split: mode 1 changes by +2.00 %")
+    run = Run((cell,), property_checks=(altered,))
     assert summary.status(run) == FAILED
     assert evidence.verdict(run) == "No: frequencies change in 1 other description of the same blade."
     assert properties.lines(run) == ["Invariance: stations split: mode 1 changes by +2.00 % (wing)."]
-    right = Run((cell,), property_checks=(replace(wrong, difference=1e-9, verdict="pass", reason=""),))
-    assert properties.lines(right) == [
+    correct = Run((cell,), property_checks=(replace(altered, difference=1e-9, verdict="pass", reason=""),))
+    assert properties.lines(correct) == [
         "Invariances: frequencies of wing are equal in 1 other descriptions, to 1.0e-07 %."
     ]

@@ -121,9 +121,9 @@ def upper_triangle(patch: pytest.MonkeyPatch) -> None:
     rows: dict[tuple[str, int], dict[int, list[float]]] = {}
     row = beamdyn._row
 
-    def mirrored(text: Any, k: int, what: str, j: int, i: int, count: int) -> list[float]:
-        before = rows.setdefault((what, i), {})
-        before[j] = row(text, k, what, j, i, count)
+    def mirrored(text: Any, k: int, kind: str, j: int, i: int, count: int) -> list[float]:
+        before = rows.setdefault((kind, i), {})
+        before[j] = row(text, k, kind, j, i, count)
         return [before[c][j] if c < j else v for c, v in enumerate(before[j])]
 
     patch.setattr(beamdyn, "_row", mirrored)
@@ -295,8 +295,8 @@ def test_neighbouring_columns_exchanged_in_a_reader_are_refused_or_found(
     """All 835 pairs of these tables were exchanged once: 379 are refused, 455 are found, and one has no effect."""
     module, order = TABLES[name], list[str]()
     path, mount = deck(tmp_path, name)
-    table, right = module.table, again(path, mount).stations
-    assert right is not None
+    table, original = module.table, again(path, mount).stations
+    assert original is not None
 
     def exchange(text: Any, first: int, count: int, columns: Any) -> Any:
         read = table(text, first, count, columns)
@@ -309,7 +309,7 @@ def test_neighbouring_columns_exchanged_in_a_reader_are_refused_or_found(
     while not order or k < len(order) - 1:
         with contextlib.suppress(CaseError):
             blade = readers.reading(path, mount).blade
-            if all(p.agrees for p in compare(blade, right)):
+            if all(p.agrees for p in compare(blade, original)):
                 accepted.append(f"{order[k]}, {order[k + 1]}")
         k += 1
     assert not accepted
@@ -337,9 +337,9 @@ def test_the_reason_names_property_station_and_both_values(tmp_path: Path, monke
     path, mount = deck(tmp_path, "elastodyn_main.dat")
     monkeypatch.setattr(elastodyn, "section_stiffness", exchanged(elastodyn.section_stiffness, 2, 3))
     repeated = again(path, mount)
-    wrong = [p.where(repeated.reader) for p in repeated.contradictions]
-    assert [line.partition(" at ")[0] for line in wrong] == ["flapwise stiffness", "edgewise stiffness"]
-    assert wrong[1] == EDGEWISE.format(repeated.reader)
+    altered = [p.where(repeated.reader) for p in repeated.contradictions]
+    assert [line.partition(" at ")[0] for line in altered] == ["flapwise stiffness", "edgewise stiffness"]
+    assert altered[1] == EDGEWISE.format(repeated.reader)
 
 
 def test_a_mount_that_the_user_states_is_not_compared(tmp_path: Path) -> None:

@@ -171,9 +171,9 @@ def test_one_per_cent_of_mass_is_found_by_name(
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
     monkeypatch.setattr(module, function, heavier(getattr(module, function)))
     result = wt.weights(blade, wt.stations_of(blade), models(adapter, blade))
-    wrong = {w.name: w.difference for w in result if w.verdict == "fail"}
-    assert set(wrong) == {"mass", "first moment of mass along x", "inertia about the rotor's axis"}
-    assert wrong["mass"] == pytest.approx(0.01, rel=1e-3)
+    failures = {w.name: w.difference for w in result if w.verdict == "fail"}
+    assert set(failures) == {"mass", "first moment of mass along x", "inertia about the rotor's axis"}
+    assert failures["mass"] == pytest.approx(0.01, rel=1e-3)
     line = next(w.line for w in result if w.name == "mass")
     assert line.startswith("mass: ")
     assert line.endswith(" kg by quadrature of the stations: +1 %")
@@ -182,12 +182,12 @@ def test_one_per_cent_of_mass_is_found_by_name(
 @pytest.mark.parametrize("name", SAMPLE_THEMSELVES)
 def test_one_per_cent_of_mass_in_core_is_seen_in_the_frequencies(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
-    given = adapter.modes(blade, 0.0, adapter.levels[1], 2).frequencies
+    computed = adapter.modes(blade, 0.0, adapter.levels[1], 2).frequencies
     agreed = solve.modes(blade, 0.0, 32, 2).frequencies
     monkeypatch.setattr(core_sampling, "_interpolate", heavier(core_sampling._interpolate))
-    wrong = solve.modes(blade, 0.0, 32, 2).frequencies
-    assert (np.abs(given / agreed - 1.0) < 3e-3).all()
-    assert given / wrong == pytest.approx(given / agreed * 1.01**0.5, rel=1e-6)
+    altered = solve.modes(blade, 0.0, 32, 2).frequencies
+    assert (np.abs(computed / agreed - 1.0) < 3e-3).all()
+    assert computed / altered == pytest.approx(computed / agreed * 1.01**0.5, rel=1e-6)
 
 
 def softer(old: Callable[..., Any]) -> Callable[..., Any]:
@@ -213,10 +213,10 @@ def test_one_per_cent_of_stiffness_is_found_by_name(
     monkeypatch.setattr(module, function, softer(getattr(module, function)))
     assembled = [wt.of_core(blade)] if name == "core" else models(code(name), blade)
     result = wt.weights(blade, wt.stations_of(blade), assembled)
-    wrong = {w.name: w.difference for w in result if w.verdict == "fail"}
-    assert {"tip flexibility along z", "tip flexibility about y"} <= set(wrong)
-    assert not {"tip flexibility along y", "tip flexibility about z", "tip flexibility about x"} & set(wrong)
-    assert wrong["tip flexibility along z"] == pytest.approx(1 / 0.99 - 1, rel=1e-2)
+    failures = {w.name: w.difference for w in result if w.verdict == "fail"}
+    assert {"tip flexibility along z", "tip flexibility about y"} <= set(failures)
+    assert not {"tip flexibility along y", "tip flexibility about z", "tip flexibility about x"} & set(failures)
+    assert failures["tip flexibility along z"] == pytest.approx(1 / 0.99 - 1, rel=1e-2)
 
 
 def test_a_soft_tip_takes_a_finer_model() -> None:

@@ -67,9 +67,9 @@ def test_measured_points_and_misses_are_counted() -> None:
     cells = (*at(BEFORE.cells, 0, verdict="measured"), replace(CELL, mode=9, verdict="fail"))
     assert compared(replace(BEFORE, cells=cells)).measured == 1
     entry = history.entry(replace(BEFORE, cells=cells, controls=()), "x", "m")
-    right, wrong = (Property("beam", "core", "fingerprint", "mass", 0.1, verdict) for verdict in ("pass", "fail"))
+    correct, altered = (Property("beam", "core", "fingerprint", "mass", 0.1, verdict) for verdict in ("pass", "fail"))
     assert gate.misses(entry) == 1
-    assert gate.misses(replace(entry, properties=(right, right, wrong))) == 2
+    assert gate.misses(replace(entry, properties=(correct, correct, altered))) == 2
 
 
 DAMPING = replace(CELL, mode=1, quantity="damping", value=0.14, reference=0.14, difference=0.0, full=None)
@@ -235,11 +235,11 @@ def test_a_summary_s_tables_are_cut_and_say_so() -> None:
     many = tuple(replace(CELL, mode=k, value=float(k)) for k in range(1, 72))
     after = tuple(replace(c, value=(c.value or 0.0) * (1 + 1e-6)) for c in many)
     comparison = compared(replace(RUN, cells=after), replace(RUN, cells=many))
-    shown = gate_text.markdown(comparison, False, {})
-    assert "✔ gate passed: 71 cells" in shown
-    assert "… and 21 more" in shown
-    assert shown.count("+1.0e-06") == 50
-    assert "| 1.000001 " in shown
+    output = gate_text.markdown(comparison, False, {})
+    assert "✔ gate passed: 71 cells" in output
+    assert "… and 21 more" in output
+    assert output.count("+1.0e-06") == 50
+    assert "| 1.000001 " in output
 
 
 @pytest.fixture
@@ -308,11 +308,11 @@ def test_the_command_writes_what_ci_shows(folders, tmp_path: Path, capsys, monke
     status, out, _ = southwell(line, capsys)
     assert status == 1
     assert "::error title=beam::some-code" in out
-    shown = (tmp_path / "summary.md").read_text()
-    assert shown.startswith(
+    output = (tmp_path / "summary.md").read_text()
+    assert output.startswith(
         "before\n### Southwell\n\n**No: 1 answer contradicts Southwell's own solver.** 3 cells: 1 ✘ fail"
     )
-    assert "**✘ gate failed" in shown
+    assert "**✘ gate failed" in output
     assert len(ElementTree.parse(tmp_path / "j.xml").findall(".//testcase")) == 8
 
 

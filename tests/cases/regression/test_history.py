@@ -85,18 +85,18 @@ def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     assert {p.name for p in tmp_path.iterdir()} == {"source.jsonl", "history.jsonl"}  # no lock file is left
 
 
-@pytest.mark.parametrize("kept", [1, 100, -2, -1])
-def test_a_line_cut_short_is_named_and_spoils_no_other(tmp_path: Path, kept: int) -> None:
+@pytest.mark.parametrize("size", [1, 100, -2, -1])
+def test_a_line_cut_short_is_named_and_spoils_no_other(tmp_path: Path, size: int) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "first", date=MADE))
     whole = file.read_bytes()
     history.append(file, history.entry(RUN, "second", date=MADE))
-    cut = file.read_bytes()[len(whole) :][:kept]
+    cut = file.read_bytes()[len(whole) :][:size]
     file.write_bytes(whole + cut)
     content = history.read(file)
     # a line that lacks only its end is whole
-    assert [e.commit for e in content.entries] == (["first", "second"] if kept == -1 else ["first"])
-    assert content.truncated == (() if kept == -1 else (2,))
+    assert [e.commit for e in content.entries] == (["first", "second"] if size == -1 else ["first"])
+    assert content.truncated == (() if size == -1 else (2,))
     history.append(file, history.entry(RUN, "third", date=MADE))
     after = history.read(file)
     assert after.truncated == content.truncated
@@ -178,8 +178,8 @@ def test_an_incomplete_run_is_not_what_others_are_compared_with(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, lines: int
 ) -> None:
     results_file.write(tmp_path / "good", RUN)
-    whole = (tmp_path / "good").read_bytes().splitlines(keepends=True)
-    (tmp_path / "cut").write_bytes(b"".join(whole[:lines]))
+    content = (tmp_path / "good").read_bytes().splitlines(keepends=True)
+    (tmp_path / "cut").write_bytes(b"".join(content[:lines]))
     status, out, err = southwell(line.format(tmp_path), capsys)
     assert (status, out, err.count("\n")) == (3, "", 1)
     assert err.startswith(f"southwell: {tmp_path / 'cut'}: incomplete: ")

@@ -51,8 +51,8 @@ if __name__ == "__main__":
 def test_processes_that_are_still_starting_end_silently(how: str, tmp_path: Path) -> None:
     (tmp_path / "stopped.py").write_text(STOPPED, encoding="utf-8")
     line = [sys.executable, "stopped.py", how]
-    done = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, start_new_session=True, timeout=120)
-    assert (done.returncode, done.stderr) == (0, "")
+    process = subprocess.run(line, cwd=tmp_path, capture_output=True, text=True, start_new_session=True, timeout=120)
+    assert (process.returncode, process.stderr) == (0, "")
 
 
 @pytest.mark.parametrize("module", ["distributed", "dask_jobqueue"])
@@ -70,14 +70,16 @@ def test_without_dask_there_is_a_hint(module: str, monkeypatch: pytest.MonkeyPat
 
 
 @pytest.mark.parametrize(
-    ("address", "said"),
+    ("address", "message"),
     [("host", "missing port number"), ("nothing://host:1", "unknown address scheme"), ("tcp://127.0.0.1:1", "after")],
 )
-def test_an_address_without_a_scheduler_is_one_line(address: str, said: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_address_without_a_scheduler_is_one_line(
+    address: str, message: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     pytest.importorskip("distributed", reason="Dask is not installed: pip install -e '.[dev]'")
     monkeypatch.setattr("southwell.cases.run.cluster.CONNECT", 0.5)
     with (
-        pytest.raises(CaseError, match=f"--scheduler {address}: no Dask scheduler answers .*{said}"),
+        pytest.raises(CaseError, match=f"--scheduler {address}: no Dask scheduler answers .*{message}"),
         executor(1, address),
     ):
         pass
@@ -187,8 +189,10 @@ def test_verify_gives_the_same_results_on_a_cluster(cluster: Any, tmp_path: Path
     result = {}
     for name, options in (("here", ["--workers", "1"]), ("there", ["--scheduler", cluster.scheduler_address])):
         line = ["verify", "tip-mass", "--codes", "exact-beam", "--faults", "none", "--out", name, *options]
-        done = subprocess.run([sys.executable, "-m", "southwell", *line], cwd=tmp_path, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
+        process = subprocess.run(
+            [sys.executable, "-m", "southwell", *line], cwd=tmp_path, capture_output=True, text=True
+        )
+        assert process.returncode == 0, process.stderr
         result[name] = (tmp_path / name / "results.jsonl").read_text()
     assert result["here"] == result["there"]
     assert len(result["here"].splitlines()) > 10

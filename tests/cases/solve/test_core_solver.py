@@ -41,10 +41,10 @@ def test_a_soft_root_between_two_stations_is_within_the_stated_uncertainty(fract
     (result,), dense = converged(blade(1), [0.0], Compare(modes=6), ALL_EFFECTS), modes(blade(400), 0.0, count=6)
     assert isinstance(result, Converged)
     assert result.indices == tuple(range(6))
-    for mode, expected, sure in zip(result.modes, dense.frequencies, dense.uncertainty, strict=True):
+    for mode, expected, uncertainty in zip(result.modes, dense.frequencies, dense.uncertainty, strict=True):
         assert mode.estimate is not None
         assert mode.estimate.uncertainty is not None
-        assert abs(mode.estimate.value / expected - 1.0) <= mode.estimate.uncertainty + sure
+        assert abs(mode.estimate.value / expected - 1.0) <= mode.estimate.uncertainty + uncertainty
 
 
 def test_the_reference_is_refined_until_it_can_judge_a_code() -> None:

@@ -38,9 +38,9 @@ def test_a_deck_is_recognised_by_length_and_mass(name: str, rpm: float, tables: 
 
 
 def test_another_blade_has_none() -> None:
-    right = blade("nrel-5mw-blade.dat")
-    assert not about_deck(replace(right, mass=1.005 * right.mass), np.zeros(1))
-    assert not [p for p in about(right, ("hawcstab2", "mbwind")) if p.series.deck]
+    correct = blade("nrel-5mw-blade.dat")
+    assert not about_deck(replace(correct, mass=1.005 * correct.mass), np.zeros(1))
+    assert not [p for p in about(correct, ("hawcstab2", "mbwind")) if p.series.deck]
 
 
 def test_the_columns_are_those_of_a_file() -> None:

@@ -48,10 +48,10 @@ def edgewise(code: object, omega: float = 10.0) -> np.ndarray:
 
 def test_no_stretch_no_rotary_inertia_is_what_the_closed_forms_say() -> None:
     """Yoo and Shin's model lacks the steady stretch and rotary inertia; Euler–Bernoulli without stretch: 11.71325 rad/s."""
-    exact, theirs = edgewise(exact_beam.CODE), edgewise(yoo_shin.CODE)
+    exact, expected = edgewise(exact_beam.CODE), edgewise(yoo_shin.CODE)
     for k in range(3):
         both = share("no prestretch", f"edgewise {k + 1}") + share("no rotary", f"edgewise {k + 1}")
-        assert both == pytest.approx(theirs[k] / exact[k] - 1.0, abs=2e-6)
+        assert both == pytest.approx(expected[k] / exact[k] - 1.0, abs=2e-6)
     assert share("no stretch", "edgewise 1") == pytest.approx(11.71325 / 11.71131 - 1.0, abs=2e-6)
 
 
@@ -60,8 +60,8 @@ def test_shear_and_rotary_inertia_at_rest_are_rayleighs_corrections() -> None:
     change is −½ (I/A) ∫w₁²/∫w² by rotary inertia and −½ (EI/κGA) ∫w₃²/∫w₂² by shear; indices: derivatives.
     """
     case = library.load(CASE)
-    still = replace(case.variants[0], speeds=np.array([0.0]))
-    rows = {(s.part, s.mode): s.change for s in error_budget.solve(case, still)}
+    at_rest = replace(case.variants[0], speeds=np.array([0.0]))
+    rows = {(s.part, s.mode): s.change for s in error_budget.solve(case, at_rest)}
     x, gyration = np.linspace(0.0, 1.0, 4001), 2e-7 / 4e-4 / 6.0**2
     for k, beta in enumerate((1.875104069, 4.694091133, 7.854757438), 1):
         sigma = (np.cosh(beta) + np.cos(beta)) / (np.sinh(beta) + np.sin(beta))

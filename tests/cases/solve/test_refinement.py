@@ -23,11 +23,11 @@ def of(omega: float, elements: int, error: float) -> Spectrum:
     return of_blade(Modes(omega, np.array([EXACT * (1.0 + error)]), SHAPE, elements), WEIGHT)
 
 
-def solver(coefficient: Callable[[float], float], asked: list[Run]) -> Callable[[Sequence[Run]], list[Answer]]:
+def solver(coefficient: Callable[[float], float], requests: list[Run]) -> Callable[[Sequence[Run]], list[Answer]]:
     """Answers with an error of the theoretical order and one of the next even order, which extrapolation leaves."""
 
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        asked.extend(runs)
+        requests.extend(runs)
         return [of(w, n, coefficient(w) * (n**-2.0 + 5.0 * n**-4.0)) for w, n, _ in runs]
 
     return ask
@@ -35,10 +35,10 @@ def solver(coefficient: Callable[[float], float], asked: list[Run]) -> Callable[
 
 def refined(coefficient: float, cap: int = 10_000) -> list[int]:
     """Elements of the answers at one speed."""
-    asked: list[Run] = []
+    runs: list[Run] = []
     compared = Compared(of(1.0, 1, 0.0), (0,))
-    solve(solver(lambda _: coefficient, asked), [1.0], Refining((10, 20, 30), ORDER, cap), 1, lambda *_: compared)
-    return [n for _, n, _ in asked]
+    solve(solver(lambda _: coefficient, runs), [1.0], Refining((10, 20, 30), ORDER, cap), 1, lambda *_: compared)
+    return [n for _, n, _ in runs]
 
 
 def uncertainty(coefficient: float, elements: Sequence[int]) -> float:
@@ -75,29 +75,29 @@ def test_the_finest_is_the_cap() -> None:
 
 
 def test_each_speed_is_refined_for_itself() -> None:
-    asked: list[Run] = []
+    runs: list[Run] = []
     compared = Compared(of(1.0, 1, 0.0), (0,))
     solve(
-        solver(lambda w: 0.1 if w < 2.0 else 100.0, asked),
+        solver(lambda w: 0.1 if w < 2.0 else 100.0, runs),
         [1.0, 3.0],
         Refining((10, 20, 30), ORDER, 10_000),
         1,
         lambda *_: compared,
     )
-    assert [run for run in asked if run[0] == 1.0] == [(1.0, n, 1) for n in (10, 20, 30)]
-    assert len([run for run in asked if run[0] == 3.0]) > 3
+    assert [run for run in runs if run[0] == 1.0] == [(1.0, n, 1) for n in (10, 20, 30)]
+    assert len([run for run in runs if run[0] == 3.0]) > 3
 
 
 def test_an_unknown_order_doubles_the_elements() -> None:
-    asked: list[Run] = []
+    requests: list[Run] = []
 
     def ask(runs: Sequence[Run]) -> list[Answer]:
-        asked.extend(runs)
+        requests.extend(runs)
         return [of(w, n, {10: 0.1, 20: 0.0, 30: 0.05}.get(n, 1e-9 / n)) for w, n, _ in runs]
 
     compared = Compared(of(1.0, 1, 0.0), (0,))
     solve(ask, [1.0], Refining((10, 20, 30), ORDER, 60), 1, lambda *_: compared)
-    assert [n for _, n, _ in asked] == [10, 20, 30, 60]
+    assert [n for _, n, _ in requests] == [10, 20, 30, 60]
 
 
 def test_a_level_with_as_many_elements_as_the_one_before_is_a_failure() -> None:

@@ -115,11 +115,11 @@ def test_both_readings_of_an_htc_agree(tmp_path: Path) -> None:
     assert set(rows.values()) == {"pass"}
 
 
-def other_way(right: Callable[..., Any], sign: Sequence[int]) -> Callable[..., Any]:
+def other_way(original: Callable[..., Any], sign: Sequence[int]) -> Callable[..., Any]:
     """A concentrated mass with its place from the node mirrored."""
 
     def masses(body: Sequence[Any], nodes: np.ndarray) -> Any:
-        out, left = right(body, nodes)
+        out, left = original(body, nodes)
         mirror = np.diag([*sign, *(int(np.prod(sign)) * s for s in sign)]).astype(float)
         return tuple(replace(m, inertia=mirror @ m.inertia @ mirror) for m in out), left
 

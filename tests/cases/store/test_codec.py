@@ -32,16 +32,16 @@ MODES = Modes(2.0, np.array([1.0, 1 / 3 + 1.0]), np.full((2, len(STATIONS), 4), 
     ],
 )
 def test_plain_values_and_dataclasses_come_back(value: Any) -> None:
-    again = decode(encode(value))
-    assert (again, type(again), repr(again)) == (value, type(value), repr(value))
+    second = decode(encode(value))
+    assert (second, type(second), repr(second)) == (value, type(value), repr(value))
 
 
 def test_arrays_come_back_bit_for_bit_and_times_do_not() -> None:
-    again = decode(encode(MODES))
-    assert again.shapes.tobytes() == MODES.shapes.tobytes()
-    assert again.frequencies.tobytes() == MODES.frequencies.tobytes()
-    assert (again.shapes.dtype, again.elements) == (MODES.shapes.dtype, 10)
-    assert math.isnan(again.seconds)
+    second = decode(encode(MODES))
+    assert second.shapes.tobytes() == MODES.shapes.tobytes()
+    assert second.frequencies.tobytes() == MODES.frequencies.tobytes()
+    assert (second.shapes.dtype, second.elements) == (MODES.shapes.dtype, 10)
+    assert math.isnan(second.seconds)
 
 
 @pytest.mark.parametrize(

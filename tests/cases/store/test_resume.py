@@ -39,9 +39,9 @@ def same(folder: Path, undisturbed: Path) -> None:
 def reported(folder: Path, command: str) -> tuple[int, str]:
     """Status and first line of a command on the folder of results, in a process of its own."""
     line = [sys.executable, "-m", "southwell", *command.split(), "out"]
-    done = subprocess.run(line, cwd=folder, env=killing.environment(folder), capture_output=True, text=True)
-    assert "Traceback" not in done.stderr
-    return done.returncode, (done.stdout + done.stderr).splitlines()[0]
+    process = subprocess.run(line, cwd=folder, env=killing.environment(folder), capture_output=True, text=True)
+    assert "Traceback" not in process.stderr
+    return process.returncode, (process.stdout + process.stderr).splitlines()[0]
 
 
 @pytest.mark.parametrize(
@@ -50,7 +50,7 @@ def reported(folder: Path, command: str) -> tuple[int, str]:
 def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: Path, undisturbed: Path) -> None:
     path = tmp_path / "out" / PARTIAL
     assert killing.kill(killing.start(tmp_path), lambda: killing.answers(path) >= count)
-    kept, before = killing.stored(path), killing.asked(tmp_path)
+    stored, before = killing.stored(path), killing.asked(tmp_path)
     assert not (tmp_path / "out" / RESULTS).exists()
     if count == 8:
         for command in ("report", "gate", "dashboard"):
@@ -59,7 +59,7 @@ def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: P
             assert "ncomplete: " in line
     status, _, err = killing.ended(killing.start(tmp_path))
     assert status == 0, err
-    assert not set(killing.asked(tmp_path)[len(before) :]) & set(kept)
+    assert not set(killing.asked(tmp_path)[len(before) :]) & set(stored)
     shutil.rmtree(tmp_path / "southwell-dashboard", ignore_errors=True)
     same(tmp_path, undisturbed)
 
@@ -79,16 +79,16 @@ def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Pat
 def test_a_changed_case_or_version_takes_no_earlier_answer(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "out" / PARTIAL
     assert killing.kill(killing.start(tmp_path), lambda: len(killing.stored(path)) >= 2)
-    kept = killing.stored(path)
+    stored = killing.stored(path)
     monkeypatch.setattr(killing, "CASE", killing.CASE.replace("2.5", "2.6").replace("E = 7e10", "E = 7.1e10"))
     before = killing.asked(tmp_path)
     assert killing.ended(killing.start(tmp_path))[0] == 0
-    assert set(killing.asked(tmp_path)[len(before) :]) >= set(kept)
+    assert set(killing.asked(tmp_path)[len(before) :]) >= set(stored)
     assert killing.kill(killing.start(tmp_path), lambda: len(killing.stored(path)) >= 2)
-    kept, before = killing.stored(path), killing.asked(tmp_path)
+    stored, before = killing.stored(path), killing.asked(tmp_path)
     monkeypatch.setenv("COUNTED_VERSION", "2.0")
     assert killing.ended(killing.start(tmp_path))[0] == 0
-    assert set(killing.asked(tmp_path)[len(before) :]) >= set(kept)
+    assert set(killing.asked(tmp_path)[len(before) :]) >= set(stored)
 
 
 def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(tmp_path: Path) -> None:
@@ -97,8 +97,8 @@ def test_a_second_run_in_the_same_folder_is_refused_and_an_earlier_result_stays(
     earlier = b'{"kind":"plan","columns":[]}\n'
     (out / RESULTS).write_bytes(earlier)
     with unfinished.locked(out):
-        status, shown, err = killing.ended(killing.start(tmp_path))
-    assert (status, shown, err.count("\n")) == (2, "", 1)
+        status, output, err = killing.ended(killing.start(tmp_path))
+    assert (status, output, err.count("\n")) == (2, "", 1)
     assert "--out out: another run is writing in this folder" in err
     assert (out / RESULTS).read_bytes() == earlier
 
@@ -119,9 +119,9 @@ def test_a_disk_that_fills_up_keeps_what_is_there(tmp_path: Path, undisturbed: P
     assert status == 3
     assert "Traceback" not in err
     assert f"{PARTIAL}: " in err.splitlines()[-1]
-    kept, before = killing.stored(tmp_path / "out" / PARTIAL), killing.asked(tmp_path)
+    stored, before = killing.stored(tmp_path / "out" / PARTIAL), killing.asked(tmp_path)
     assert killing.ended(killing.start(tmp_path))[0] == 0
-    assert not set(killing.asked(tmp_path)[len(before) :]) & set(kept)
+    assert not set(killing.asked(tmp_path)[len(before) :]) & set(stored)
     same(tmp_path, undisturbed)
 
 
@@ -136,10 +136,10 @@ def test_killed_at_a_hundred_random_moments(tmp_path: Path, undisturbed: Path) -
     path = tmp_path / "out" / PARTIAL
     while kills < int(os.environ.get("SOUTHWELL_KILLS", "100")):
         until = monotonic() + random.uniform(0.2, 1.0) * longest
-        kept, before = killing.stored(path), len(killing.asked(tmp_path))
+        stored, before = killing.stored(path), len(killing.asked(tmp_path))
         alive = killing.kill(killing.start(tmp_path), lambda until=until: monotonic() > until)
         kills, runs = kills + alive, runs + (not alive)
-        assert not set(killing.asked(tmp_path)[before:]) & set(kept), f"seed {seed}"
+        assert not set(killing.asked(tmp_path)[before:]) & set(stored), f"seed {seed}"
         assert killing.running(tmp_path) == [], f"seed {seed}"
         if alive and path.exists():
             assert reported(tmp_path, "gate")[0] == 3, f"seed {seed}"

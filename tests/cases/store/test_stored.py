@@ -50,9 +50,9 @@ def test_an_answer_is_computed_once(kept: Store) -> None:
     first = Stored(Serial(), kept)
     assert [first.submit(double, x).result() for x in (1.0, 2.0, 1.0)] == [2.0, 4.0, 2.0]
     assert CALLS == [1.0, 2.0]
-    again = Stored(Serial(), kept)
-    assert again.submit(double, 2.0).result() == 4.0
-    assert (CALLS, again.asked, len(again.taken)) == ([1.0, 2.0], 1, 1)
+    second = Stored(Serial(), kept)
+    assert second.submit(double, 2.0).result() == 4.0
+    assert (CALLS, second.asked, len(second.taken)) == ([1.0, 2.0], 1, 1)
 
 
 def test_a_column_that_solves_nothing_starts_no_process(kept: Store) -> None:
@@ -88,8 +88,8 @@ def test_a_fault_that_was_not_detected_is_tried_again(kept: Store) -> None:
 
 def column(**changed: Any) -> Column:
     head = Head("case", "code", "1.0", "code", 1e-3, "nothing")
-    made = Column("code", ALL_EFFECTS, head, partial(lost, head))
-    return replace(made, **changed)
+    failing_column = Column("code", ALL_EFFECTS, head, partial(lost, head))
+    return replace(failing_column, **changed)
 
 
 def test_every_part_of_the_key_counts(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -148,9 +148,9 @@ def test_verify_takes_the_second_time_what_it_computed_the_first(tmp_path: Path)
 
     def run(out: str, *more: str) -> str:
         command = [sys.executable, "-m", "southwell", *line, out, *more]
-        done = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return done.stderr
+        process = subprocess.run(command, cwd=tmp_path, env=env, capture_output=True, text=True)
+        assert process.returncode == 0, process.stderr
+        return process.stderr
 
     assert "from the store" not in run("first")
     # the weights of two models are asked again: the store of the processes of codes has them

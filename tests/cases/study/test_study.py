@@ -63,11 +63,11 @@ def test_every_sample_speed_and_mode_has_a_row(tmp_path: Path) -> None:
 
 def test_a_speed_without_a_steady_state_costs_its_own_row_only(tmp_path: Path) -> None:
     """An articulated blade has no stable state at rest; the later speeds are those of a study without rest."""
-    given = 'name = "hinged"\nblades = ["articulated/hinged"]\nmodes = 3\n[speeds]\nrad_s = {}\n'
+    text = 'name = "hinged"\nblades = ["articulated/hinged"]\nmodes = 3\n[speeds]\nrad_s = {}\n'
     name = next(v.name for v in library.load("articulated").variants)
-    given = given.replace("articulated/hinged", name)
-    solved(study(tmp_path, given.format("[0.0, 5.0, 10.0]")), tmp_path / "all.jsonl")
-    solved(study(tmp_path, given.format("[5.0, 10.0]")), tmp_path / "later.jsonl")
+    text = text.replace("articulated/hinged", name)
+    solved(study(tmp_path, text.format("[0.0, 5.0, 10.0]")), tmp_path / "all.jsonl")
+    solved(study(tmp_path, text.format("[5.0, 10.0]")), tmp_path / "later.jsonl")
     first, *later = rows(tmp_path / "all.jsonl")
     assert first.reason is not None
     assert "hinge" in first.reason
@@ -116,10 +116,10 @@ class Stopping(Serial):
 
 @pytest.mark.parametrize("at", [0, 1, 4])
 def test_a_stopped_study_continues_and_solves_nothing_twice(at: int, tmp_path: Path) -> None:
-    design, asked = study(tmp_path), []
+    design, samples = study(tmp_path), []
 
     def counted(task: Task) -> bytes:
-        asked.append(task.sample)
+        samples.append(task.sample)
         return stub(task)
 
     with pytest.raises(BrokenExecutor):
@@ -127,7 +127,7 @@ def test_a_stopped_study_continues_and_solves_nothing_twice(at: int, tmp_path: P
     assert solved(design, tmp_path / "out.jsonl", answer=counted) == solved(
         design, tmp_path / "whole.jsonl", answer=stub
     )
-    assert sorted(asked) == list(range(6))
+    assert sorted(samples) == list(range(6))
 
 
 class BrokenFirst(Serial):
@@ -164,7 +164,7 @@ def test_a_truncated_header_is_written_again(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "message"),
     [
         ({"seed": 2}, "of another study"),
         ({"samples": 7}, "of another study"),
@@ -172,11 +172,13 @@ def test_a_truncated_header_is_written_again(tmp_path: Path) -> None:
         ({"blade": "tip-mass"}, "of another study"),
     ],
 )
-def test_the_file_of_another_study_is_refused_and_unchanged(change: dict[str, Any], said: str, tmp_path: Path) -> None:
+def test_the_file_of_another_study_is_refused_and_unchanged(
+    change: dict[str, Any], message: str, tmp_path: Path
+) -> None:
     path = tmp_path / "out.jsonl"
     solved(study(tmp_path), path, answer=stub)
     before = path.read_bytes()
-    with pytest.raises(CaseError, match=said):
+    with pytest.raises(CaseError, match=message):
         solved(study(tmp_path, **change), path, answer=stub)
     assert path.read_bytes() == before
 
@@ -209,15 +211,15 @@ def test_a_file_that_is_no_study_is_refused_and_unchanged(content: bytes, tmp_pa
 def test_a_damaged_or_repeated_line_is_refused_by_its_number(tmp_path: Path) -> None:
     design, path = study(tmp_path), tmp_path / "out.jsonl"
     solved(design, path, answer=stub)
-    whole = path.read_bytes().splitlines(keepends=True)
-    path.write_bytes(b"".join([*whole[:3], b"noise\n", *whole[4:]]))
+    content = path.read_bytes().splitlines(keepends=True)
+    path.write_bytes(b"".join([*content[:3], b"noise\n", *content[4:]]))
     with pytest.raises(CaseError, match="line 4: not a row"):
         solved(design, path, answer=stub)
-    path.write_bytes(b"".join([*whole[:3], *whole[4:]]))
+    path.write_bytes(b"".join([*content[:3], *content[4:]]))
     with pytest.raises(CaseError, match=r"line 4: sample 0 .* gap"):
         solved(design, path, answer=stub)
-    path.write_bytes(b"".join([*whole, *whole[1:7]]))
-    with pytest.raises(CaseError, match=rf"line {len(whole) + 1}: sample 0 .* twice"):
+    path.write_bytes(b"".join([*content, *content[1:7]]))
+    with pytest.raises(CaseError, match=rf"line {len(content) + 1}: sample 0 .* twice"):
         solved(design, path, answer=stub)
 
 

@@ -72,5 +72,5 @@ def by_direct_stiffness(halvings: int, count: int) -> np.ndarray:
 def test_at_rest_it_is_the_frame_of_the_direct_stiffness_method() -> None:
     """The frame's lumped mass makes an error of second order in the elements' length: extrapolated from two divisions."""
     coarse, fine = by_direct_stiffness(0, 8), by_direct_stiffness(1, 8)
-    still = replace(sandia34.mechanism(0.0), gravity=(0.0, 0.0, 0.0))
-    np.testing.assert_allclose(mb.solve(still, count=8).frequencies, fine + (fine - coarse) / 3.0, rtol=5e-4)
+    at_rest = replace(sandia34.mechanism(0.0), gravity=(0.0, 0.0, 0.0))
+    np.testing.assert_allclose(mb.solve(at_rest, count=8).frequencies, fine + (fine - coarse) / 3.0, rtol=5e-4)

@@ -37,22 +37,22 @@ def exact(blade: Blade, omega: float = OMEGA) -> Modes:
 
 def test_without_geometric_stiffness_the_rotation_only_softens() -> None:
     """In the plane of rotation ω² = ω₀² − Ω²: 3.36 instead of 11.71; out of it ω₀ stays."""
-    wrong = made("no geometric stiffness")
-    assert first(wrong) == pytest.approx(np.sqrt(AT_REST**2 - OMEGA**2), rel=1e-3)
-    assert first(wrong, Z) == pytest.approx(AT_REST, rel=1e-3)
+    altered = made("no geometric stiffness")
+    assert first(altered) == pytest.approx(np.sqrt(AT_REST**2 - OMEGA**2), rel=1e-3)
+    assert first(altered, Z) == pytest.approx(AT_REST, rel=1e-3)
 
 
 def test_softening_reversed_adds_twice_the_square_of_the_speed() -> None:
     """ω² = ω_flap² + Ω² in the plane of rotation, but for stretch and Coriolis; out of it nothing changes."""
-    wrong, right = made("softening's sign"), exact(park())
-    assert first(wrong) == pytest.approx(np.sqrt(first(right, Z) ** 2 + OMEGA**2), rel=3e-4)
-    assert first(wrong, Z) == pytest.approx(first(right, Z), rel=5e-5)
+    altered, correct = made("softening's sign"), exact(park())
+    assert first(altered) == pytest.approx(np.sqrt(first(correct, Z) ** 2 + OMEGA**2), rel=3e-4)
+    assert first(altered, Z) == pytest.approx(first(correct, Z), rel=5e-5)
 
 
 def test_a_frozen_frame_reads_edgewise_as_flapwise() -> None:
-    wrong, right = made("frozen frame"), exact(park())
-    assert wrong.frequencies[:2] == pytest.approx([first(right, Z)] * 2, rel=5e-5)
-    assert wrong.frequencies[0] / first(right) - 1.0 == pytest.approx(0.315, abs=1e-3)
+    altered, correct = made("frozen frame"), exact(park())
+    assert altered.frequencies[:2] == pytest.approx([first(correct, Z)] * 2, rel=5e-5)
+    assert altered.frequencies[0] / first(correct) - 1.0 == pytest.approx(0.315, abs=1e-3)
 
 
 def test_softening_is_that_of_points() -> None:
@@ -75,10 +75,10 @@ def test_softening_is_that_of_points() -> None:
 
 def test_a_shifted_axis_without_couplings_is_a_stiffer_beam() -> None:
     """EI_z + EA e² with e a quarter of √(EI_z/EA): frequencies times √(1 + 1/16); flapwise as before."""
-    wrong, right = made("axis shifted", 0.0), exact(park(), 0.0)
-    stiff = max(wrong.frequencies[:2])
-    assert stiff / right.frequencies[0] == pytest.approx(np.sqrt(1 + blade_errors.OFFSET**2), rel=1e-4)
-    assert min(wrong.frequencies[:2]) == pytest.approx(right.frequencies[0], rel=1e-4)
+    altered, correct = made("axis shifted", 0.0), exact(park(), 0.0)
+    stiff = max(altered.frequencies[:2])
+    assert stiff / correct.frequencies[0] == pytest.approx(np.sqrt(1 + blade_errors.OFFSET**2), rel=1e-4)
+    assert min(altered.frequencies[:2]) == pytest.approx(correct.frequencies[0], rel=1e-4)
 
 
 def test_a_whole_end_mass_is_half_an_elements_mass_too_much() -> None:
@@ -101,8 +101,8 @@ def test_a_coarse_mode_is_found_among_the_converged() -> None:
     """Fifteen point masses are 2 % off in the second mode; still it is the one that half a mass too much is seen in."""
     case = library.load("tip-mass")
     variant = replace(case.variants[0], speeds=np.array([12.0]))
-    (wrong,) = (w for w in fault_effects.solve(variant, case.text.compare) if w.fault == "whole end mass")
-    assert max(wrong.modes, key=lambda m: abs(m.change or 0.0)).name == "flapwise 2"
+    (altered,) = (w for w in fault_effects.solve(variant, case.text.compare) if w.fault == "whole end mass")
+    assert max(altered.modes, key=lambda m: abs(m.change or 0.0)).name == "flapwise 2"
 
 
 def test_a_blade_that_a_mistake_leaves_singular_has_no_modes_to_tell_of() -> None:

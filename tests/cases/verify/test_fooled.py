@@ -74,18 +74,18 @@ def test_a_printed_number_is_not_excused_by_a_discretisation_that_leads_elsewher
     """Core without geometric stiffness at 10 rad/s: with 50 elements it gives the printed number as long as those are right;
     their refinements lead to 11.7 rad/s, and not to the 3.4 that is core's then."""
     fault = BY_NAME["no geometric stiffness"]
-    right = core_solver.mesh_sweep
+    original = core_solver.mesh_sweep
 
     def converged_only(*args, mass: Mass = "consistent", stiffness: Measure = "corotational", **kwargs) -> list[Modes]:
         with seeding.seeded(fault.seams if mass == "consistent" else ()):
-            return list(right(*args, mass=mass, stiffness=stiffness, **kwargs))
+            return list(original(*args, mass=mass, stiffness=stiffness, **kwargs))
 
     trial = seeding.Trial(PARK, (10.0,), ())
     with seeding.seeded(((core_solver, "mesh_sweep", lambda _: converged_only),)):
-        wrong = [c for c in seeding.cells(trial) if c.code == "park2010/present"]
-    assert wrong
-    assert {c.verdict for c in wrong} == {"fail"}
-    assert max(abs(c.difference or 0.0) for c in wrong) > 2.0
+        failures = [c for c in seeding.cells(trial) if c.code == "park2010/present"]
+    assert failures
+    assert {c.verdict for c in failures} == {"fail"}
+    assert max(abs(c.difference or 0.0) for c in failures) > 2.0
     expected = [c for c in seeding.cells(trial) if c.verdict == "known difference" and c.role == "table"]
     assert len(expected) == 1
     assert "its limit under refinement is" in expected[0].reason
@@ -244,8 +244,8 @@ def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, phrase: str) 
 
 @pytest.mark.slow
 def test_nothing_compared_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    asked = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
-    status, out, _ = southwell(asked, capsys)
+    command = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
+    status, out, _ = southwell(command, capsys)
     assert status == 1
     assert "Open: nothing was compared" in out
 

@@ -83,9 +83,9 @@ def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) 
     for key, verdict in BAD.items():
         path = written(key, folder)
         result = run(case, path, "southwell-equation")
-        bad = [c for c in result.cells if c.code in ("misdeed", path)]
-        assert {(c.omega > 0, c.verdict) for c in bad} == {(False, verdict), (True, verdict)}, (key, bad)
-        assert all(c.reason for c in bad)
+        failures = [c for c in result.cells if c.code in ("misdeed", path)]
+        assert {(c.omega > 0, c.verdict) for c in failures} == {(False, verdict), (True, verdict)}, (key, failures)
+        assert all(c.reason for c in failures)
         good = of(result, "southwell-equation")
         assert [(c.value, c.verdict) for c in good] == [(c.value, c.verdict) for c in alone]
         assert summary.status(result) == (1 if verdict == "fail" else 0)
@@ -102,10 +102,10 @@ def test_an_entry_point_that_exits_costs_its_own_cells(folder: Path, monkeypatch
     monkeypatch.syspath_prepend(str(folder))
     monkeypatch.setenv("PYTHONPATH", str(folder))
     assert {"theirs", "gone"} <= set(registry.names())
-    ours, theirs, gone = describe(["yoo-shin", "theirs", "gone"], limits=Limits(30.0))
-    assert ours.failure is None
-    assert theirs.failure
-    assert "exit status 0" in theirs.failure.reason
+    actual, expected, gone = describe(["yoo-shin", "theirs", "gone"], limits=Limits(30.0))
+    assert actual.failure is None
+    assert expected.failure
+    assert "exit status 0" in expected.failure.reason
     assert gone.failure
     assert "No module named 'no_such_module'" in gone.failure.reason
 
@@ -130,12 +130,12 @@ def test_a_lost_pool_worker_is_no_interruption(
         raise BrokenProcessPool
 
     monkeypatch.setattr(matrix, "run", lost)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["verify", case.path, "--codes", "yoo-shin", "--faults", "none", "--workers", "1"])
-    said = capsys.readouterr().err
-    assert ended.value.code == INCOMPLETE
-    assert "a worker process was killed" in said
-    assert "interrupted" not in said
+    message = capsys.readouterr().err
+    assert exit_info.value.code == INCOMPLETE
+    assert "a worker process was killed" in message
+    assert "interrupted" not in message
 
 
 @pytest.mark.slow
@@ -153,6 +153,6 @@ def test_no_process_of_a_run_executes_files_of_the_current_folder(case: Case, fo
         "--codes",
         "yoo-shin",
     ]
-    ended = subprocess.run([*command, "--workers", "1"], capture_output=True, text=True, timeout=200)
-    assert ended.returncode == 0, ended.stderr
-    assert "pass" in ended.stdout
+    process = subprocess.run([*command, "--workers", "1"], capture_output=True, text=True, timeout=200)
+    assert process.returncode == 0, process.stderr
+    assert "pass" in process.stdout

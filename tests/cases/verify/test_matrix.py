@@ -189,13 +189,13 @@ def test_what_was_solved_before_a_failure_still_counts(case) -> None:
 
 @pytest.mark.slow
 def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
-    seen: list[Progress] = []
+    steps: list[Progress] = []
     with ThreadPoolExecutor(1) as executor:
-        run = matrix.run(blades(case()), [f"{ANALYTIC}GOOD", f"{ANALYTIC}UNABLE"], executor, seen.append, parts=False)
-    assert [p.done for p in seen] == [0, 1, 2, 3, 4, 5]
-    assert {p.total for p in seen} == {5}
-    assert seen[0].running == ("rest × Southwell",)
-    assert sorted((c.code, c.mode) for p in seen for c in p.cells) == sorted((c.code, c.mode) for c in run.cells)
+        run = matrix.run(blades(case()), [f"{ANALYTIC}GOOD", f"{ANALYTIC}UNABLE"], executor, steps.append, parts=False)
+    assert [p.done for p in steps] == [0, 1, 2, 3, 4, 5]
+    assert {p.total for p in steps} == {5}
+    assert steps[0].running == ("rest × Southwell",)
+    assert sorted((c.code, c.mode) for p in steps for c in p.cells) == sorted((c.code, c.mode) for c in run.cells)
 
 
 @pytest.mark.slow
@@ -214,15 +214,15 @@ def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     fast, other = case("[0, 1600]"), case("[0]", "rest", "beside")
     with ThreadPoolExecutor(2) as executor:
         run = matrix.run(blades(fast, other), [f"{ANALYTIC}GOOD", f"{ANALYTIC}ABSENT"], executor, parts=False)
-    bad = [c for c in run.cells if c.omega == 1600]
-    assert {(c.code, c.verdict, c.mode) for c in bad} == {
+    failures = [c for c in run.cells if c.omega == 1600]
+    assert {(c.code, c.verdict, c.mode) for c in failures} == {
         (PAPER, "fail", 0),
         ("southwell", "fail", 0),
         ("good", "fail", 0),
         ("absent", "not run", 0),
     }
     reason = r"speeds: 1600 rad/s: no steady state: .*: give lower speeds"
-    assert all(re.fullmatch(reason, c.reason) for c in bad if c.verdict == "fail")
+    assert all(re.fullmatch(reason, c.reason) for c in failures if c.verdict == "fail")
     answers = {
         name: [(c.omega, c.mode, c.value, c.verdict) for c in run.cells if (c.case, c.code) == (name, "good")]
         for name in ("rest", "beside")

@@ -66,27 +66,27 @@ def test_coordinates_may_come_in_another_order_and_some_be_missing() -> None:
 
 
 def test_a_frequency_that_is_off_fails() -> None:
-    bad = reported(lambda a: replace(a, values=a.values * np.array([1.0, 1 + 1e-6])))
-    assert verdicts(bad) == ["pass", "fail"]
-    assert verdicts(bad, "damping") == ["pass", "pass"]
-    assert "exceeds" in bad[2].reason
+    faulty = reported(lambda a: replace(a, values=a.values * np.array([1.0, 1 + 1e-6])))
+    assert verdicts(faulty) == ["pass", "fail"]
+    assert verdicts(faulty, "damping") == ["pass", "pass"]
+    assert "exceeds" in faulty[2].reason
 
 
 def test_a_damping_ratio_that_is_off_fails_though_the_frequency_is_right() -> None:
-    bad = reported(lambda a: replace(a, values=1j * np.abs(a.values)))
-    assert verdicts(bad) == ["pass", "pass"]
-    assert verdicts(bad, "damping") == ["fail", "pass"]
-    lag = bad[1]
+    faulty = reported(lambda a: replace(a, values=1j * np.abs(a.values)))
+    assert verdicts(faulty) == ["pass", "pass"]
+    assert verdicts(faulty, "damping") == ["fail", "pass"]
+    lag = faulty[1]
     assert (lag.value, lag.reference) == (0.0, pytest.approx(0.1397, abs=1e-4))
     assert lag.difference == pytest.approx(-lag.reference)
     assert "exceeds" in lag.reason
 
 
 def test_a_shape_like_no_other_has_no_partner() -> None:
-    bad = reported(lambda a: replace(a, shapes=np.stack([a.shapes[0] + a.shapes[1], a.shapes[0] - a.shapes[1]])))
-    assert verdicts(bad) == verdicts(bad, "damping") == ["fail", "fail"]
-    assert "no partner: its most similar mode" in bad[0].reason
-    assert "has MAC 0.5" in bad[0].reason
+    faulty = reported(lambda a: replace(a, shapes=np.stack([a.shapes[0] + a.shapes[1], a.shapes[0] - a.shapes[1]])))
+    assert verdicts(faulty) == verdicts(faulty, "damping") == ["fail", "fail"]
+    assert "no partner: its most similar mode" in faulty[0].reason
+    assert "has MAC 0.5" in faulty[0].reason
 
 
 def test_coordinates_that_do_not_tell_the_modes_apart_are_a_failure() -> None:
@@ -120,36 +120,36 @@ def test_no_answer_is_a_cell_that_says_so(kind, verdict: str) -> None:
 
 def test_codes_for_blades_have_no_column_unless_there_is_no_other() -> None:
     subject = mechanism.subject(library.mechanism("hinged-blade"))
-    both = describe(("southwell-equation", "exudyn-loops"))
-    assert [c.name for c in subject.columns(both, Limits(1.0), ())] == ["exudyn-loops", "closed form"]
-    alone = subject.columns(both[:1], Limits(1.0), ())
+    descriptions = describe(("southwell-equation", "exudyn-loops"))
+    assert [c.name for c in subject.columns(descriptions, Limits(1.0), ())] == ["exudyn-loops", "closed form"]
+    alone = subject.columns(descriptions[:1], Limits(1.0), ())
     (cell,) = alone[0]([10.0], [reference()])[0]
     assert (cell.verdict, cell.reason) == ("not applicable", "the code takes blades, not mechanisms")
 
 
 def test_codes_for_mechanisms_have_no_column_of_a_blade_unless_there_is_no_other() -> None:
     case = library.load("wright-flapwise")
-    both = describe(("southwell-equation", "exudyn-loops"))
-    assert "exudyn-loops" not in [c.name for c in blade_columns(case, case.variants[0], both, Limits(1.0))]
-    alone = blade_columns(case, case.variants[0], both[1:], Limits(1.0))
+    descriptions = describe(("southwell-equation", "exudyn-loops"))
+    assert "exudyn-loops" not in [c.name for c in blade_columns(case, case.variants[0], descriptions, Limits(1.0))]
+    alone = blade_columns(case, case.variants[0], descriptions[1:], Limits(1.0))
     (cell,) = next(c for c in alone if c.name == "exudyn-loops").work([(1.0, None)])[0]
     assert (cell.verdict, cell.reason) == ("not applicable", "the code takes mechanisms, not blades")
 
 
 def test_what_goes_to_a_worker_comes_back_bit_for_bit() -> None:
     m = library.mechanism("pitch-link").mechanism
-    back = wire.decode_mechanism(json.loads(json.dumps(wire.encode_mechanism(m))))
-    for ours, theirs in zip(m.bodies, back.bodies, strict=True):
-        np.testing.assert_array_equal(ours.inertia, theirs.inertia)
-    for ours, theirs in zip(m.joints, back.joints, strict=True):
-        np.testing.assert_array_equal(ours.at_parent, theirs.at_parent)
-        assert (ours.name, ours.kind, ours.cut) == (theirs.name, theirs.kind, theirs.cut)
+    returned = wire.decode_mechanism(json.loads(json.dumps(wire.encode_mechanism(m))))
+    for actual, expected in zip(m.bodies, returned.bodies, strict=True):
+        np.testing.assert_array_equal(actual.inertia, expected.inertia)
+    for actual, expected in zip(m.joints, returned.joints, strict=True):
+        np.testing.assert_array_equal(actual.at_parent, expected.at_parent)
+        assert (actual.name, actual.kind, actual.cut) == (expected.name, expected.kind, expected.cut)
     described = library.mechanism("pitch-link")
     solved = mb.solve(described.mechanism, described.guess)
     modes = MechanismModes(solved.coordinates, solved.linear.state.q, solved.values, solved.shapes)
-    again = boundary.mechanism_modes(json.loads(json.dumps(wire.encode(modes))))
-    np.testing.assert_array_equal(again.shapes, modes.shapes)
-    np.testing.assert_array_equal(again.values, modes.values)
+    second = boundary.mechanism_modes(json.loads(json.dumps(wire.encode(modes))))
+    np.testing.assert_array_equal(second.shapes, modes.shapes)
+    np.testing.assert_array_equal(second.values, modes.values)
 
 
 class Wild(MechanismAdapter):
@@ -238,14 +238,14 @@ def test_a_code_that_is_not_installed_is_not_run_where_core_has_no_reference_eit
 
 def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
     options = ["--codes", "southwell-equation", "--faults", "none", "--workers", "1"]
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["verify", str(path), *options, "--out", str(tmp_path / "out")])
-    return int(ended.value.code or 0), capsys.readouterr().out
+    return int(exit_info.value.code or 0), capsys.readouterr().out
 
 
 @pytest.mark.slow
 @pytest.mark.parametrize(
-    ("change", "status", "said"),
+    ("change", "status", "message"),
     [
         ((), 0, "16 ✔ pass"),
         ((("lag_damper = 600.0", "lag_damper = 601.0"),), 1, "4 ✘ fail"),
@@ -254,10 +254,10 @@ def verify(capsys, tmp_path: Path, path: Path) -> tuple[int, str]:
     ],
     ids=["right", "another damper", "another blade", "a parameter missing"],
 )
-def test_verify_judges_a_mechanism_by_its_file(capsys, tmp_path: Path, change, status: int, said: str) -> None:
+def test_verify_judges_a_mechanism_by_its_file(capsys, tmp_path: Path, change, status: int, message: str) -> None:
     """The closed form's parameters are stated apart from the mechanism, so that one that is wrong is seen."""
     result, out = verify(capsys, tmp_path, write(tmp_path, "hinged-blade", *change))
-    assert (result, said in out) == (status, True), out
+    assert (result, message in out) == (status, True), out
 
 
 def test_formulae_of_limiting_blades() -> None:

@@ -42,10 +42,10 @@ def cells(
     """Cells of a code that answers with core's modes, its eigenvalues altered at each refinement."""
 
     def answers(name: str, turbine: Turbine, runs: Sequence[Run], limits: Limits, version: str) -> list[TurbineModes]:
-        made = machine(turbine, Resolution())
+        full_machine = machine(turbine, Resolution())
         out = []
         for omega, elements, count in runs:
-            modes = turbine_modes(made, omega, count)
+            modes = turbine_modes(full_machine, omega, count)
             out.append(TurbineModes(alter(1j * modes.frequencies, elements), modes.motions, elements))
         return out
 
@@ -92,9 +92,9 @@ def test_a_deck_is_verified_with_an_independent_code(tmp_path: Path, capsys: pyt
     line = f"verify {deck(tmp_path)} --rpm 20 --faults none --out {tmp_path / 'out'} --codes exudyn-turbine"
     with pytest.raises(SystemExit) as exit_:
         app.main(line.split())
-    shown = " ".join(capsys.readouterr().out.split())
-    assert (exit_.value.code or 0) == 0, shown
-    assert "8 cells: 8 ✔ pass" in shown
+    output = " ".join(capsys.readouterr().out.split())
+    assert (exit_.value.code or 0) == 0, output
+    assert "8 cells: 8 ✔ pass" in output
 
 
 def test_conform_points_a_code_for_turbines_to_its_case(capsys: pytest.CaptureFixture[str]) -> None:

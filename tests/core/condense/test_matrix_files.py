@@ -32,10 +32,10 @@ def ordered(e: Exported) -> Array:
     return e.matrix.toarray()[np.ix_(pick, pick)]
 
 
-def entries(which: str):
+def entries(kind: str):
     """Index pairs of the given triangle (or all), shuffled, without zeros."""
     i, j = np.indices(MATRIX.shape).reshape(2, -1)
-    keep = (MATRIX[i, j] != 0) & {"lower": i >= j, "upper": i <= j, "full": i >= 0}[which]
+    keep = (MATRIX[i, j] != 0) & {"lower": i >= j, "upper": i <= j, "full": i >= 0}[kind]
     return RNG.permutation(np.column_stack([i, j])[keep])
 
 
@@ -96,19 +96,19 @@ def test_calculix_stored_matrices(tmp_path: Path) -> None:
 # Abaqus
 
 
-@pytest.mark.parametrize("which", ["lower", "upper", "full"])
+@pytest.mark.parametrize("kind", ["lower", "upper", "full"])
 @pytest.mark.parametrize("comma", [", ", " "])
-def test_abaqus_matrix_input(tmp_path: Path, which: str, comma: str) -> None:
+def test_abaqus_matrix_input(tmp_path: Path, kind: str, comma: str) -> None:
     path = tmp_path / "part_STIF1.mtx"
-    rows = [[NODES[i], FREEDOMS[i], NODES[j], FREEDOMS[j], f"{MATRIX[i, j]:.15e}"] for i, j in entries(which)]
+    rows = [[NODES[i], FREEDOMS[i], NODES[j], FREEDOMS[j], f"{MATRIX[i, j]:.15e}"] for i, j in entries(kind)]
     path.write_text("** comment\n" + "\n".join(comma.join(map(str, row)) for row in rows))
     np.testing.assert_allclose(ordered(read_matrix(path)), MATRIX, rtol=1e-14)
 
 
-@pytest.mark.parametrize("which", ["lower", "full"])
-def test_abaqus_coordinate_names_no_freedoms(tmp_path: Path, which: str) -> None:
+@pytest.mark.parametrize("kind", ["lower", "full"])
+def test_abaqus_coordinate_names_no_freedoms(tmp_path: Path, kind: str) -> None:
     path = tmp_path / "part_STIF1.mtx"
-    path.write_text("\n".join(f"{i + 1} {j + 1} {MATRIX[i, j]:.15e}" for i, j in entries(which)))
+    path.write_text("\n".join(f"{i + 1} {j + 1} {MATRIX[i, j]:.15e}" for i, j in entries(kind)))
     content = read_matrix(path)
     np.testing.assert_allclose(content.matrix.toarray(), MATRIX, rtol=1e-14)
     assert not len(content.nodes)
@@ -129,9 +129,9 @@ def nastran_real(value: float, width: int) -> str:
     raise AssertionError(value)
 
 
-def dmig(name: str, wide: bool, form: int, which: str) -> list[str]:
+def dmig(name: str, wide: bool, form: int, kind: str) -> list[str]:
     lines = [f"DMIG    {name:8}{0:8d}{form:8d}{2:8d}{0:8d}{'':16}{18:8d}"]
-    pairs = entries(which)
+    pairs = entries(kind)
     for j in np.unique(pairs[:, 1]):
         rows = [(NODES[i], FREEDOMS[i], float(MATRIX[i, j])) for i in pairs[pairs[:, 1] == j, 0]]
         if wide:
@@ -145,8 +145,8 @@ def dmig(name: str, wide: bool, form: int, which: str) -> list[str]:
 
 
 @pytest.mark.parametrize(("wide", "digits"), [(True, 1e-9), (False, 6e-3)], ids=["large field", "small field"])
-@pytest.mark.parametrize(("form", "which"), [(6, "lower"), (6, "upper"), (1, "full")])
-def test_nastran_dmig(tmp_path: Path, wide: bool, digits: float, form: int, which: str) -> None:
+@pytest.mark.parametrize(("form", "kind"), [(6, "lower"), (6, "upper"), (1, "full")])
+def test_nastran_dmig(tmp_path: Path, wide: bool, digits: float, form: int, kind: str) -> None:
     """Read from a file with another matrix and a comment; eight columns hold three digits of a negative number."""
     path = tmp_path / "part.pch"
     other = [
@@ -155,7 +155,7 @@ def test_nastran_dmig(tmp_path: Path, wide: bool, digits: float, form: int, whic
         "DMIG*   MAAX                           7",
     ]
     other[-1] = f"DMIG*   {'MAAX':16}{7:16d}{1:16d}"
-    lines = [*dmig("KAAX", wide, form, which), *other, f"*       {7:16d}{1:16d}{3.5:16.9E}"]
+    lines = [*dmig("KAAX", wide, form, kind), *other, f"*       {7:16d}{1:16d}{3.5:16.9E}"]
     path.write_text("\n".join(lines))
     np.testing.assert_allclose(ordered(read_matrix(path, "kaax")), MATRIX, rtol=digits)
     mass = read_matrix(path, "MAAX")
@@ -250,9 +250,9 @@ def test_many_words_at_once_are_read_as_one_alone() -> None:
     )
     assert reals("x", [*range(7)], plain + odd).tolist() == [1.0, -2.5, 0.0005, 7.0, 1500.0, 1500.0, 0.2]
     assert integers("x", [1, 2, 3], ["1", "-2", "+30"]).tolist() == [1, -2, 30]
-    for wrong in ("1e31", "1e999", "nan", "1_0", "e5", "1e", "--1", ""):
+    for invalid in ("1e31", "1e999", "nan", "1_0", "e5", "1e", "--1", ""):
         with pytest.raises(MatrixFileError, match="x, line 8: "):
-            reals("x", [7, 8], ["1.0", wrong])
-    for wrong in ("2147483648", "99999999999999999999999", "1.0", "1_0", "1-2", ""):
+            reals("x", [7, 8], ["1.0", invalid])
+    for invalid in ("2147483648", "99999999999999999999999", "1.0", "1_0", "1-2", ""):
         with pytest.raises(MatrixFileError, match="x, line 8: "):
-            integers("x", [7, 8], ["1", wrong])
+            integers("x", [7, 8], ["1", invalid])

@@ -77,8 +77,10 @@ def test_two_joined_segments_are_one_of_twice_the_length() -> None:
     """``body_twist`` differs by the rotary inertia of the sections, which ``segment_from_matrix`` neglects."""
     for result, expected in zip(joined(uniform_segments(20)), uniform_segments(10), strict=True):
         for field, within in (("undeformed", 1e-12), ("stiffness", 1e-12), ("inertia", 1e-12), ("body_twist", 5e-3)):
-            wanted = getattr(expected, field)
-            np.testing.assert_allclose(getattr(result, field), wanted, atol=within * np.abs(wanted).max())
+            expected_value = getattr(expected, field)
+            np.testing.assert_allclose(
+                getattr(result, field), expected_value, atol=within * np.abs(expected_value).max()
+            )
     assert len(joined(uniform_segments(7))) == 4
 
 
@@ -203,10 +205,10 @@ def test_a_matrix_that_is_not_a_segments_is_refused(change, match: str) -> None:
 def test_a_matrix_of_other_end_frames_is_refused() -> None:
     """In millimetres where metres were meant: rotations no longer fit translations."""
     k, _, undeformed = beam_segment(0.5)
-    wrong = undeformed.copy()
-    wrong[0, 3] *= 1e3
+    altered = undeformed.copy()
+    altered[0, 3] *= 1e3
     with pytest.raises(CondensationError, match=r"as a rigid body causes forces .*units"):
-        between(k, wrong, "segment")
+        between(k, altered, "segment")
 
 
 def test_a_mechanism_between_sections_is_refused() -> None:

@@ -101,10 +101,10 @@ def test_a_beamdyn_curve_of_few_points_is_followed(tmp_path: Path) -> None:
     result = reading(path).blade
     assert result.curve[-1, 2] == -6.0
     z = np.linspace(0.0, 40.0, 5)
-    theirs = CubicSpline(z, [[0, 0], [0.1, -0.05], [0, -0.1], [-0.5, 0], [-6, 0.4]], bc_type="natural")
+    expected = CubicSpline(z, [[0, 0], [0.1, -0.05], [0, -0.1], [-0.5, 0], [-6, 0.4]], bc_type="natural")
     s = 0.5 * (result.stations[1:] + result.stations[:-1])
     pose = frames(result, s)
-    slope = theirs(pose[:, 0, 3] - result.hub_radius, 1)
+    slope = expected(pose[:, 0, 3] - result.hub_radius, 1)
     tangent = np.column_stack([np.ones_like(s), -slope[:, 1], slope[:, 0]])
     tangent = tangent @ root(result)[:3, :3].T / np.linalg.norm(tangent, axis=1)[:, None]
     np.testing.assert_allclose(pose[:, :3, 0], tangent, atol=2e-3)
@@ -118,12 +118,12 @@ def test_a_huge_curve_from_python_is_refused_without_a_warning() -> None:
 def test_stations_that_are_spans_and_not_arc_lengths_are_refused() -> None:
     """A circle of 20 m radius over its x: 3 % longer than its span. The arc length itself is accepted."""
     s = np.linspace(0.0, 10.0, 11)
-    right = arc(s)
+    correct = arc(s)
     with pytest.raises(
         BladeError, match=r"curve: its points at .* m apart, but their arc lengths differ .*spans along x"
     ):
-        blade(right[:, 0], right)
-    assert blade(s, right).length == 10.0
+        blade(correct[:, 0], correct)
+    assert blade(s, correct).length == 10.0
 
 
 def test_a_misplaced_point_is_located() -> None:

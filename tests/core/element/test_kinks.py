@@ -152,15 +152,15 @@ def test_joint_chains_have_the_kink_too(name: str, blade: Blade) -> None:
     code = registry.code(name)
     if code.version() is None:
         pytest.skip(f"{name} is not installed")
-    ours = mesh_modes(blade, 1.0, 12, 6, mass="half_end", stiffness="body_fixed")
-    theirs = code.solve(blade, 1.0, 12, 6)
-    np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=1e-8 if name == "pinocchio" else 1e-6)
+    actual = mesh_modes(blade, 1.0, 12, 6, mass="half_end", stiffness="body_fixed")
+    expected = code.solve(blade, 1.0, 12, 6)
+    np.testing.assert_allclose(expected.frequencies, actual.frequencies, rtol=1e-8 if name == "pinocchio" else 1e-6)
     np.testing.assert_allclose(
-        np.abs(np.einsum("mij,mij->m", theirs.shapes[..., :3].conj(), ours.shapes[..., :3])),
-        np.linalg.norm(theirs.shapes[..., :3], axis=(1, 2)) * np.linalg.norm(ours.shapes[..., :3], axis=(1, 2)),
+        np.abs(np.einsum("mij,mij->m", expected.shapes[..., :3].conj(), actual.shapes[..., :3])),
+        np.linalg.norm(expected.shapes[..., :3], axis=(1, 2)) * np.linalg.norm(actual.shapes[..., :3], axis=(1, 2)),
         rtol=2e-3,
     )
-    assert theirs.elements == ours.elements
+    assert expected.elements == actual.elements
 
 
 def test_bodies_of_the_joint_chain_are_at_the_ends_of_the_elements() -> None:

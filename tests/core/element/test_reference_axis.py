@@ -41,12 +41,12 @@ def about(blade: Blade, offset: np.ndarray) -> Blade:
     Velocities and strains at the new point are v + ω × d and γ + κ × d, with d from the old point to the new.
     """
     to_new = sp.adjoint(sp.pose(np.eye(3), -offset))
-    back = np.linalg.inv(to_new)
+    inverse = np.linalg.inv(to_new)
     return replace(
         blade,
-        stiffness=back.T @ blade.stiffness @ back,
-        mass=back.T @ blade.mass @ back,
-        tip_mass=back.T @ blade.tip_mass @ back,
+        stiffness=inverse.T @ blade.stiffness @ inverse,
+        mass=inverse.T @ blade.mass @ inverse,
+        tip_mass=inverse.T @ blade.tip_mass @ inverse,
         curve=blade.curve + offset,
     )
 
@@ -82,8 +82,8 @@ def test_frequencies_of_a_rotating_blade_do_not_depend_on_the_reference_axis(ele
 def test_an_axis_shifted_for_the_stiffness_only_is_detected() -> None:
     """Negative control: stiffness about the other axis, mass not."""
     original = blade(np.random.default_rng(3))
-    wrong = replace(original, stiffness=about(original, OFFSET).stiffness)
-    results = [mesh_modes(b, 12.0, 12, 8).frequencies for b in (original, wrong)]
+    altered = replace(original, stiffness=about(original, OFFSET).stiffness)
+    results = [mesh_modes(b, 12.0, 12, 8).frequencies for b in (original, altered)]
     assert np.abs(results[1] / results[0] - 1).max() > 1e-2
 
 

@@ -92,9 +92,9 @@ def test_refusals_do_not_depend_on_the_units(name: str, mass: int, length: int, 
 def test_a_slider_crank_of_any_size_is_assembled(metres: float) -> None:
     """From a guess of half the distance; the slider is at ``r cos θ + √(l² − r² sin² θ)``."""
     mechanism, _ = linkages.slider_crank()
-    still = replace(mechanism, motions=(mb.Motion("turn.rz", 0.0), mb.Motion("O.rz", 0.8)))
+    at_rest = replace(mechanism, motions=(mb.Motion("turn.rz", 0.0), mb.Motion("O.rz", 0.8)))
     guess = {"P.rz": -0.5, "guide.z": 1.0}
-    solution = mb.solve(*in_other_units((still, guess), Units(length=1.0 / metres)))
+    solution = mb.solve(*in_other_units((at_rest, guess), Units(length=1.0 / metres)))
     exact = 0.5 * np.cos(0.8) + np.sqrt(4.0 - (0.5 * np.sin(0.8)) ** 2)
     assert solution.steady["guide.z"] == pytest.approx(exact * metres, rel=1e-12)
 

@@ -34,12 +34,12 @@ def flapping(mu: float, gamma: float = 12.0, p: float = 1.0) -> Periodic:
     ("mu", "real", "imaginary"), [(0.5, (-1.00331312, -0.49668688), 0.5), (1.5, (-1.59061361, 0.09061361), 0.0)]
 )
 def test_flapping_in_forward_flight(mu: float, real: tuple[float, float], imaginary: float) -> None:
-    both = compared(flapping(mu))
-    for exponents in (both.floquet, both.hill):
+    comparison = compared(flapping(mu))
+    for exponents in (comparison.floquet, comparison.hill):
         np.testing.assert_allclose(np.sort(exponents.values.real), real, atol=5e-9)
         np.testing.assert_allclose(np.abs(exponents.values.imag), imaginary, atol=1e-9)
         assert exponents.values.real.sum() == pytest.approx(-12 / 8, abs=1e-10)
-    assert both.difference < 1e-10
+    assert comparison.difference < 1e-10
 
 
 def mathieu(a: float, q: float) -> Periodic:
@@ -58,9 +58,9 @@ def test_limits_of_mathieus_chart() -> None:
 
 
 def test_hill_and_floquet_agree_in_the_unstable_range() -> None:
-    both = compared(mathieu(1.0, 1.0))
-    assert both.floquet.growth > 0.1
-    assert both.floquet.growth == pytest.approx(both.hill.growth, rel=1e-10)
+    comparison = compared(mathieu(1.0, 1.0))
+    assert comparison.floquet.growth > 0.1
+    assert comparison.floquet.growth == pytest.approx(comparison.hill.growth, rel=1e-10)
 
 
 def test_isotropic_springs_seen_from_the_rotating_frame() -> None:
@@ -68,8 +68,8 @@ def test_isotropic_springs_seen_from_the_rotating_frame() -> None:
     omega, nature = 1.3, 4.1
     J = np.array([[0.0, -1.0], [1.0, 0.0]])
     system = constant(np.eye(2), 2 * omega * J, (nature**2 - omega**2) * np.eye(2), omega, ("x", "y"))
-    both = compared(system)
-    for exponents in (both.floquet, both.hill):
+    comparison = compared(system)
+    for exponents in (comparison.floquet, comparison.hill):
         result = np.sort(np.abs(exponents.frequencies))[::2]
         np.testing.assert_allclose(result, [nature - omega, nature + omega], rtol=1e-10)
         assert not exponents.tied.any()
@@ -84,13 +84,13 @@ def test_unequal_springs_seen_from_the_rotating_frame_have_tied_frequencies() ->
         R = np.array([[np.cos(psi), -np.sin(psi)], [np.sin(psi), np.cos(psi)]])
         return np.eye(2), 2 * omega * J, R.T @ np.diag(natures**2) @ R - omega**2 * np.eye(2)
 
-    both = compared(sampled(matrices, omega, ("x", "y")))
-    for exponents in (both.floquet, both.hill):
+    comparison = compared(sampled(matrices, omega, ("x", "y")))
+    for exponents in (comparison.floquet, comparison.hill):
         assert exponents.tied.all()
         assert np.isnan(exponents.frequencies).all()
-        seen = np.sort(np.angle(exponents.multipliers))
+        observed = np.sort(np.angle(exponents.multipliers))
         np.testing.assert_allclose(
-            seen, np.sort(np.angle(np.exp(2j * np.pi * np.append(natures, -natures)))), atol=1e-9
+            observed, np.sort(np.angle(np.exp(2j * np.pi * np.append(natures, -natures)))), atol=1e-9
         )
 
 

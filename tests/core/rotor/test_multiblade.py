@@ -44,13 +44,13 @@ def test_uncoupled_blades_seen_from_the_support() -> None:
     omega, nature = 0.8, 3.0
     A = np.asarray(np.kron(np.array([[0.0, 1.0], [-(nature**2), 0.0]]), np.eye(3)), float)
     rates = np.column_stack([np.arange(3), np.arange(3) + 3])
-    seen = mb.first_order(A, 0.3, omega, mb.blades_of(6, [[0, 1, 2]]), rates)
-    result = np.sort(np.abs(np.linalg.eigvals(seen).imag))[::2]
+    observed = mb.first_order(A, 0.3, omega, mb.blades_of(6, [[0, 1, 2]]), rates)
+    result = np.sort(np.abs(np.linalg.eigvals(observed).imag))[::2]
     np.testing.assert_allclose(result, [nature - omega, nature, nature + omega], rtol=1e-12)
     start, time = np.array([0.3, -0.2, 0.5, 0.0, 0.1, 0.7]), 2.1
     T = [mb.transformation(0.3 + omega * t, 3) for t in (0.0, time)]
     z = np.linalg.solve(T[0], start[:3])
-    z = expm(seen * time) @ np.concatenate([z, np.linalg.solve(T[0], start[3:]) - omega * mb.rate(3) @ z])
+    z = expm(observed * time) @ np.concatenate([z, np.linalg.solve(T[0], start[3:]) - omega * mb.rate(3) @ z])
     np.testing.assert_allclose(T[1] @ z[:3], (expm(A * time) @ start)[:3], rtol=1e-10)
 
 

@@ -54,12 +54,12 @@ def test_one_stiffer_blade_is_never_averaged_and_needs_floquet_and_hill() -> Non
     system, _ = linearize(coleman_feingold(omega, stiffer=1.05), SHAFT)
     with pytest.raises(PeriodicError, match="blades differ"):
         averaged_exactly(in_multiblade(system, THREE))
-    both = compared(system)
-    strip = np.sort(np.abs(np.angle(both.hill.multipliers)) * omega / (2 * np.pi) ** 2)[::2]
+    comparison = compared(system)
+    strip = np.sort(np.abs(np.angle(comparison.hill.multipliers)) * omega / (2 * np.pi) ** 2)[::2]
     np.testing.assert_allclose(strip, [0.03740962, 0.04310606, 0.05847881, 0.06171777, 0.09916926], atol=5e-9)
-    assert both.difference < 1e-11
-    seen = compared(in_multiblade(system, THREE))  # the coordinates do not change the exponents
-    assert distance(both.floquet.multipliers, seen.floquet.multipliers).max() < 1e-11
+    assert comparison.difference < 1e-11
+    observed = compared(in_multiblade(system, THREE))  # the coordinates do not change the exponents
+    assert distance(comparison.floquet.multipliers, observed.floquet.multipliers).max() < 1e-11
 
 
 def test_whirl_of_the_blades_in_both_frames() -> None:
@@ -89,8 +89,8 @@ def test_ground_resonance() -> None:
     damping = 4067.5
 
     def system(omega: float) -> Periodic:
-        made = linearize(hammond(omega, (damping,) * 4, (SUPPORT[0], 5000.0)), SHAFT)[0]
-        return in_multiblade(made, FOUR)
+        linear = linearize(hammond(omega, (damping,) * 4, (SUPPORT[0], 5000.0)), SHAFT)[0]
+        return in_multiblade(linear, FOUR)
 
     roots = hammond_roots(15.0, damping, (SUPPORT[0], 5000.0))
     values = damped(*averaged_exactly(system(15.0)).mean).values
@@ -106,10 +106,10 @@ def test_a_failed_lag_damper_makes_the_rotor_periodic() -> None:
     omega, damping = 25.0, (0.0, 4067.5, 4067.5, 4067.5)
     system, _ = linearize(hammond(omega, damping, SUPPORT), SHAFT)
     for psi in (0.0, 0.7, 4.0):
-        for ours, by_hand in zip(system.at(psi), hammond_by_hand(omega, damping, SUPPORT, psi), strict=True):
-            np.testing.assert_allclose(ours, by_hand, atol=1e-9 * np.abs(by_hand).max())
-    both = compared(system)
-    assert both.difference < 1e-8
+        for actual, by_hand in zip(system.at(psi), hammond_by_hand(omega, damping, SUPPORT, psi), strict=True):
+            np.testing.assert_allclose(actual, by_hand, atol=1e-9 * np.abs(by_hand).max())
+    comparison = compared(system)
+    assert comparison.difference < 1e-8
 
     def slope(time: float, flat: np.ndarray) -> np.ndarray:
         M, C, K = hammond_by_hand(omega, damping, SUPPORT, omega * time)
@@ -117,7 +117,7 @@ def test_a_failed_lag_damper_makes_the_rotor_periodic() -> None:
         return np.concatenate([v, -np.linalg.solve(M, K @ x + C @ v)]).ravel()
 
     end = solve_ivp(slope, (0.0, 2 * np.pi / omega), np.eye(12).ravel(), "DOP853", rtol=1e-11, atol=1e-12).y[:, -1]
-    assert distance(np.linalg.eigvals(end.reshape(12, 12)), both.floquet.multipliers).max() < 1e-8
+    assert distance(np.linalg.eigvals(end.reshape(12, 12)), comparison.floquet.multipliers).max() < 1e-8
     with pytest.raises(PeriodicError, match="blades differ"):
         averaged_exactly(in_multiblade(system, FOUR))
 

@@ -73,26 +73,26 @@ def truth(blade: Blade, omega: float, count: int) -> tuple[np.ndarray, np.ndarra
 @pytest.mark.parametrize("seed", range(8))
 def test_uncertainties_cover_the_errors_of_random_blades(seed: int) -> None:
     blade, omega = random_blade(seed)
-    right, unsure = truth(blade, omega, 5)
+    exact, unsure = truth(blade, omega, 5)
     solution = solve.modes(blade, omega, count=5)
     assert solution.uncertainty.max() <= 1e-6
-    assert (np.abs(solution.frequencies / right - 1.0) <= solution.uncertainty + unsure).all()
+    assert (np.abs(solution.frequencies / exact - 1.0) <= solution.uncertainty + unsure).all()
     for elements in (12, 30, 50):
-        given = solve.modes(blade, omega, elements, 5)
-        np.testing.assert_array_equal(given.frequencies, solve.mesh_modes(blade, omega, elements, 5).frequencies)
-        assert (np.abs(given.frequencies / right - 1.0) <= given.uncertainty + unsure).all()
+        computed = solve.modes(blade, omega, elements, 5)
+        np.testing.assert_array_equal(computed.frequencies, solve.mesh_modes(blade, omega, elements, 5).frequencies)
+        assert (np.abs(computed.frequencies / exact - 1.0) <= computed.uncertainty + unsure).all()
 
 
 @pytest.mark.parametrize("EI", [1e4, 1e3, 1e2, 10.0, 1.0])
 def test_a_cable_like_blade_is_accurate_by_default(EI: float) -> None:
     """The first lag of a cable without bending stiffness is zero; otherwise it depends on the root's boundary layer only."""
     blade = cable(EI)
-    right, unsure = truth(blade, 30.0, 3)
+    exact, unsure = truth(blade, 30.0, 3)
     solution = solve.modes(blade, 30.0, count=3)
     assert solution.uncertainty.max() <= 1e-6
-    assert (np.abs(solution.frequencies / right - 1.0) <= solution.uncertainty + unsure).all()
-    given = solve.modes(blade, 30.0, 50, 3)
-    assert (np.abs(given.frequencies / right - 1.0) <= given.uncertainty).all()
+    assert (np.abs(solution.frequencies / exact - 1.0) <= solution.uncertainty + unsure).all()
+    computed = solve.modes(blade, 30.0, 50, 3)
+    assert (np.abs(computed.frequencies / exact - 1.0) <= computed.uncertainty).all()
 
 
 def test_flap_of_a_cable_tends_to_its_closed_form() -> None:
@@ -126,9 +126,9 @@ def test_rigid_stretch_is_rigid_within_the_uncertainty(omega: float) -> None:
     coarse, fine = (CODE.solve(stiff, omega, n, 2).frequencies for n in (30, 60))
     true = fine + (fine - coarse) / 15.0
     unsure = np.abs(fine / coarse - 1.0) / 15.0
-    refined, given = solve.modes(stiff, omega, count=2), solve.modes(stiff, omega, 64, 2)
+    refined, computed = solve.modes(stiff, omega, count=2), solve.modes(stiff, omega, 64, 2)
     assert refined.uncertainty.max() < 1e-6
-    for answer in (refined, given):
+    for answer in (refined, computed):
         assert (np.abs(answer.frequencies / true - 1.0) <= answer.uncertainty + unsure).all()
 
 

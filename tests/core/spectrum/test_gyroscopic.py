@@ -28,8 +28,8 @@ def test_a_shaft_above_its_critical_speed_has_the_frequencies_of_the_rotating_fr
     with pytest.warns(GyroscopicStabilityWarning, match="gyroscopic forces alone"):
         solution = modes(shaft(), speed * CRITICAL, count=4)
     second = (4.694091132974175 / 1.875104068711961) ** 2
-    right = np.sort(np.abs([1 - speed, 1 + speed, second - speed, second + speed]))
-    np.testing.assert_allclose(solution.frequencies / CRITICAL, right, rtol=1e-5)
+    correct = np.sort(np.abs([1 - speed, 1 + speed, second - speed, second + speed]))
+    np.testing.assert_allclose(solution.frequencies / CRITICAL, correct, rtol=1e-5)
 
 
 def test_a_sweep_through_the_critical_speed_continues() -> None:

@@ -100,20 +100,20 @@ def only_flap(mesh: Mesh) -> lanczos.Start:
 
 @pytest.mark.numerical
 def test_modes_that_the_start_does_not_contain_are_reported_and_computed(lumped: Mesh) -> None:
-    right = solve_mesh(lumped, 0.0, Options(6))
+    correct = solve_mesh(lumped, 0.0, Options(6))
     basis = only_flap(lumped)
     with pytest.raises(MissedModesError):
-        lanczos.lanczos(right.state.pencil, 6, basis)
-    again = solve_mesh(lumped, 0.0, Options(6), replace(right.start, basis=basis))
-    np.testing.assert_allclose(again.modes.frequencies, right.modes.frequencies, rtol=1e-12)
+        lanczos.lanczos(correct.state.pencil, 6, basis)
+    second = solve_mesh(lumped, 0.0, Options(6), replace(correct.start, basis=basis))
+    np.testing.assert_allclose(second.modes.frequencies, correct.modes.frequencies, rtol=1e-12)
 
 
 @pytest.mark.numerical
 def test_the_count_alone_reports_them(lumped: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
-    right = solve_mesh(lumped, 0.0, Options(6))
+    correct = solve_mesh(lumped, 0.0, Options(6))
     monkeypatch.setattr(completeness, "check_complete", lambda *_: None)
-    wrong = solve_mesh(lumped, 0.0, Options(6), replace(right.start, basis=only_flap(lumped)))
-    assert np.abs(wrong.modes.frequencies / right.modes.frequencies - 1.0).max() > 0.1
+    altered = solve_mesh(lumped, 0.0, Options(6), replace(correct.start, basis=only_flap(lumped)))
+    assert np.abs(altered.modes.frequencies / correct.modes.frequencies - 1.0).max() > 0.1
 
 
 @pytest.mark.numerical
@@ -161,9 +161,9 @@ def test_the_degree_of_the_extrapolation_is_that_of_the_values(true: int) -> Non
 def test_a_known_speed_is_not_extrapolated() -> None:
     mesh = discretize(replace(FLAT, precone=0.2), 20)  # its shape is no polynomial in Ω²
     *_, last = solved_in_turn(mesh, (1.0, 20.0, 30.0, 5.0, 9.0), Options(6))
-    again = blade_state.extrapolate(mesh, last.start.coordinates, -9.0)
-    assert again is not None
-    np.testing.assert_allclose(again.relative, last.state.shape.relative, rtol=0, atol=1e-14)
+    second = blade_state.extrapolate(mesh, last.start.coordinates, -9.0)
+    assert second is not None
+    np.testing.assert_allclose(second.relative, last.state.shape.relative, rtol=0, atol=1e-14)
 
 
 @pytest.mark.numerical

@@ -131,10 +131,10 @@ def test_the_command_reports_periodic_equations_in_one_line(capsys, tmp_path) ->
         'child = "b"\n[motions]\np.rz = { rate = 6.0, prescribed = false }\n',
         encoding="utf-8",
     )
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["mechanism", str(path)])
     err = capsys.readouterr().err
-    assert (ended.value.code, err.count("\n")) == (2, 1)
+    assert (exit_info.value.code, err.count("\n")) == (2, 1)
     assert "p.rz" in err
 
 

@@ -35,8 +35,8 @@ def test_rigid_stretch_does_not_scatter() -> None:
 def test_another_newton_step_changes_nothing(omega: float, how: dict[str, Any]) -> None:
     body = discretize(CONED, 50, **how)
     once = blade_state.steady_state(body, omega, np.zeros(3))
-    again = blade_state.steady_state(body, omega, np.zeros(3), once.shape)
-    f, g = (lanczos(s.pencil, 4).frequencies for s in (once, again))
+    second = blade_state.steady_state(body, omega, np.zeros(3), once.shape)
+    f, g = (lanczos(s.pencil, 4).frequencies for s in (once, second))
     np.testing.assert_allclose(f, g, rtol=1e-9)
 
 
@@ -48,12 +48,12 @@ def test_another_newton_step_changes_nothing(omega: float, how: dict[str, Any]) 
 def test_joint_chains_converge_to_rounding_too(code: Any, module: str, omega: float) -> None:
     """The stated rounding of both codes covers the difference of their solutions of one model."""
     pytest.importorskip(module)
-    theirs = code.solve(CONED, omega, 10, 6)
+    expected = code.solve(CONED, omega, 10, 6)
     solution = solve.modes(CONED, omega, 10, 6, mass="half_end", stiffness="body_fixed")
-    difference = np.abs(theirs.frequencies / solution.frequencies - 1.0)
-    assert (difference <= solution.rounding + theirs.rounding + 1e-12).all()
+    difference = np.abs(expected.frequencies / solution.frequencies - 1.0)
+    assert (difference <= solution.rounding + expected.rounding + 1e-12).all()
     assert (solution.rounding < 1e-7).all()
-    assert (theirs.rounding < 1e-11).all()
+    assert (expected.rounding < 1e-11).all()
 
 
 def test_strain_of_a_spinning_rod() -> None:

@@ -44,10 +44,10 @@ def assert_agreement(blade: Blade, omega: float, elements: int, gravity: Array =
     built = as_mechanism.mechanism(discretize(blade, elements, **options), omega, tuple(gravity.tolist()))
     hub, *others = built.motions
     frozen = (Motion(hub.coordinate, law=Polynomial([0.0, omega])), *others)  # gravity turns, seen from the blade
-    ours = modes(linearize(replace(built, motions=frozen)), 6)
-    assert isinstance(ours, Eigen)
-    theirs = solve.mesh_modes(blade, omega, elements, 6, gravity=gravity, **options)
-    np.testing.assert_allclose(ours.frequencies, theirs.frequencies, rtol=AGREE)
+    own = modes(linearize(replace(built, motions=frozen)), 6)
+    assert isinstance(own, Eigen)
+    expected = solve.mesh_modes(blade, omega, elements, 6, gravity=gravity, **options)
+    np.testing.assert_allclose(own.frequencies, expected.frequencies, rtol=AGREE)
 
 
 @pytest.mark.parametrize("name", BLADES)

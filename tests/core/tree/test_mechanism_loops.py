@@ -34,10 +34,10 @@ def reduced_residual(linear: modal.Linearization, dq: np.ndarray, dv: np.ndarray
     v[others] = a[others] = 0.0
     k = kinematics(tree, q, v, a)
     J = partition.jacobian(tree, k.B)
-    back = np.linalg.pinv(J[:, others])
-    v[others] = -back @ J @ v
+    inverse = np.linalg.pinv(J[:, others])
+    v[others] = -inverse @ J @ v
     k = kinematics(tree, q, v, a)
-    a[others] = -back @ (J @ a + partition.jacobian(tree, k.B1) @ v)
+    a[others] = -inverse @ (J @ a + partition.jacobian(tree, k.B1) @ v)
     k = kinematics(tree, q, v, a)
     c = dynamics.cartesian(tree, k)
     names = tuple(tree.coordinates[j] for j in own_answer)
@@ -55,16 +55,16 @@ def test_tangents_of_moving_loops_match_difference_quotients() -> None:
     zero, h = np.zeros(n), 1e-5
     assert np.abs(reduced_residual(linear, zero, zero, zero)).max() < 1e-9 * np.abs(linear.K).max()
 
-    def slope(which: int) -> np.ndarray:
+    def slope(kind: int) -> np.ndarray:
         def at(step: np.ndarray) -> np.ndarray:
             moved = [zero, zero, zero]
-            moved[which] = step
+            moved[kind] = step
             return reduced_residual(linear, *moved)
 
         return np.stack([(at(h * e) - at(-h * e)) / (2 * h) for e in np.eye(n)], axis=-1)
 
-    for which, ours in enumerate((linear.K, linear.C, linear.M)):
-        np.testing.assert_allclose(ours, slope(which), atol=1e-7 * np.abs(ours).max())
+    for order, actual in enumerate((linear.K, linear.C, linear.M)):
+        np.testing.assert_allclose(actual, slope(order), atol=1e-7 * np.abs(actual).max())
 
 
 @pytest.mark.parametrize("cut", ["B", "D", "E"])

@@ -88,14 +88,14 @@ def test_every_stage_of_a_random_tree(tree_data) -> None:
     at_rest = kinematics(tree, q, v, np.zeros(n))
     minus_q_star = dynamics.unbalanced(tree, at_rest, dynamics.cartesian(tree, at_rest), q, v)
     pick = np.ix_(order, order)
-    for name, ours, other, tolerance in (
+    for name, actual, other, tolerance in (
         ("M*", M, mass[pick], 1e-12),
         ("Q*", -minus_q_star, -bias[order], 1e-12),
         ("τ", dynamics.unbalanced(tree, k, c, q, v), tau[order], 1e-12),
         ("∂τ/∂q", K, dq[pick], 1e-9),
         ("∂τ/∂v", C, dv[pick], 1e-9),
     ):
-        assert np.abs(ours - other).max() <= tolerance * np.abs(other).max(), name
+        assert np.abs(actual - other).max() <= tolerance * np.abs(other).max(), name
 
 
 @settings(max_examples=10)
@@ -107,9 +107,9 @@ def test_b_matrix_is_the_frames_jacobian(tree_data) -> None:
     tree, model = build(kinds, parents, rng)
     order = np.array([model.joints[model.getJointId(c)].idx_v for c in tree.coordinates])
     q, v = rng.normal(size=(2, len(order)))
-    data, theirs = model.createData(), np.zeros(len(order))
-    theirs[order] = q
-    pin.computeJointJacobians(model, data, theirs)
+    data, expected = model.createData(), np.zeros(len(order))
+    expected[order] = q
+    pin.computeJointJacobians(model, data, expected)
     k = kinematics(tree, q, v, np.zeros_like(v))
     for i, link in enumerate(tree.link):
         joint = model.getJointId(tree.coordinates[link])

@@ -118,7 +118,7 @@ def test_a_stiff_base_is_a_clamped_one() -> None:
 
 
 @pytest.mark.parametrize(
-    ("support", "said"),
+    ("support", "message"),
     [
         (Support(base=np.diag([1e9, 1e9, 1e9, 1e9, 1e9, 0.0])), "moves freely"),
         (Support(base=np.diag([1e9, 1e9, 1e9, 1e9, 1e9, -1.0])), "moves freely"),
@@ -130,8 +130,8 @@ def test_a_stiff_base_is_a_clamped_one() -> None:
         (Support(base=np.eye(6), mass=-np.eye(6)), "negative in a direction"),
     ],
 )
-def test_a_wrong_support_is_refused(support: Support, said: str) -> None:
-    with pytest.raises(ValueError, match=said):
+def test_a_wrong_support_is_refused(support: Support, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
         tower_modes(Tower(beam(), support), 2)
 
 

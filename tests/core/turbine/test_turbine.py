@@ -78,8 +78,8 @@ def test_four_blades_have_a_differential_motion() -> None:
 
 
 def test_names_and_tracking() -> None:
-    made = machine(small(), SMALL)
-    slow, fast = turbine_modes(made, OMEGA, 8), turbine_modes(made, 1.02 * OMEGA, 8)
+    full_machine = machine(small(), SMALL)
+    slow, fast = turbine_modes(full_machine, OMEGA, 8), turbine_modes(full_machine, 1.02 * OMEGA, 8)
     assert {"1st tower fore-aft", "1st tower side-side", "1st flap collective"} <= set(slow.names)
     assert {"1st flap backward whirl", "1st flap forward whirl"} <= set(slow.names)
     order = linked(slow, fast)
@@ -89,24 +89,24 @@ def test_names_and_tracking() -> None:
 
 
 def test_whirl_of_a_reversed_rotor_has_the_same_frequencies() -> None:
-    made = machine(replace(small(), blade=replace(small().blade, pitch=0.0)), SMALL)
-    solution, back = turbine_modes(made, OMEGA, 8), turbine_modes(made, -OMEGA, 8)
+    full_machine = machine(replace(small(), blade=replace(small().blade, pitch=0.0)), SMALL)
+    solution, back = turbine_modes(full_machine, OMEGA, 8), turbine_modes(full_machine, -OMEGA, 8)
     flap = {n: f for n, f in zip(solution.names, solution.frequencies, strict=True) if "1st flap" in n}
-    again = {n: f for n, f in zip(back.names, back.frequencies, strict=True) if "1st flap" in n}
-    assert flap.keys() == again.keys()
+    second = {n: f for n, f in zip(back.names, back.frequencies, strict=True) if "1st flap" in n}
+    assert flap.keys() == second.keys()
     for name, value in flap.items():
-        assert value == pytest.approx(again[name], rel=2e-3)
+        assert value == pytest.approx(second[name], rel=2e-3)
 
 
 def test_stiff_blades_leave_the_tower_with_a_rigid_rotor() -> None:
     """At rest, as the plain solver's beam with a tip mass, under gravity."""
     turbine = replace(small(), gravity=9.81)
     stiff = replace(turbine, blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness))
-    made = machine(stiff, replace(SMALL, tower_elements=6))
-    rotor = rigid_rotor(stiff, made.blade_mesh)
+    full_machine = machine(stiff, replace(SMALL, tower_elements=6))
+    rotor = rigid_rotor(stiff, full_machine.blade_mesh)
     tower = replace(turbine.tower, tip_mass=rigid_nacelle_and_rotor(stiff, rotor))
     exact = solve.modes(tower, 0.0, elements=6, count=4, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
-    np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=3e-6)
+    np.testing.assert_allclose(turbine_modes(full_machine, 0.0, 4).frequencies, exact, rtol=3e-6)
 
 
 def test_a_turbine_on_springs_with_a_stiff_rotor_is_a_tower_on_springs() -> None:
@@ -120,10 +120,10 @@ def test_a_turbine_on_springs_with_a_stiff_rotor_is_a_tower_on_springs() -> None
         blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness),
         support=Support(K, (wire,), soil),
     )
-    made = machine(stiff, replace(SMALL, tower_elements=12))
-    tip = rigid_nacelle_and_rotor(stiff, rigid_rotor(stiff, made.blade_mesh))
+    full_machine = machine(stiff, replace(SMALL, tower_elements=12))
+    tip = rigid_nacelle_and_rotor(stiff, rigid_rotor(stiff, full_machine.blade_mesh))
     exact = tower_modes(Tower(replace(turbine.tower, tip_mass=tip), stiff.support, 9.81), 4).frequencies
-    np.testing.assert_allclose(turbine_modes(made, 0.0, 4).frequencies, exact, rtol=1e-4)
+    np.testing.assert_allclose(turbine_modes(full_machine, 0.0, 4).frequencies, exact, rtol=1e-4)
     clamped = turbine_modes(machine(replace(stiff, support=Support()), SMALL), 0.0, 4).frequencies
     assert np.abs(clamped / exact - 1.0).max() > 0.05
 
@@ -141,8 +141,8 @@ def test_a_rigid_turbine_on_a_floater_is_a_body_with_a_gyroscope() -> None:
         blade=replace(turbine.blade, stiffness=rigid * turbine.blade.stiffness),
         support=Support(K, mass=floater),
     )
-    made = machine(stiff, SMALL)
-    rotor = rigid_rotor(stiff, made.blade_mesh)
+    full_machine = machine(stiff, SMALL)
+    rotor = rigid_rotor(stiff, full_machine.blade_mesh)
     top = sp.pose(np.eye(3), np.array([turbine.tower.length, 0.0, 0.0]))
     M = tower_inertia(turbine) + transformed(rigid_nacelle_and_rotor(stiff, rotor), top) + floater
     speed = 10.0 * OMEGA
@@ -150,10 +150,10 @@ def test_a_rigid_turbine_on_a_floater_is_a_body_with_a_gyroscope() -> None:
     C = np.zeros((6, 6))
     C[3:, 3:] = -sp.skew(h)
     exact = eigen.damped(M, C, K, 6).frequencies
-    np.testing.assert_allclose(turbine_modes(made, speed, 6).frequencies, exact, rtol=1e-5)
-    assert {name.split()[0] for name in turbine_modes(made, speed, 6).names} == {"platform"}
-    still = eigen.damped(M, 0.0 * C, K, 6).frequencies
-    assert np.abs(still / exact - 1.0).max() > 5e-3
+    np.testing.assert_allclose(turbine_modes(full_machine, speed, 6).frequencies, exact, rtol=1e-5)
+    assert {name.split()[0] for name in turbine_modes(full_machine, speed, 6).names} == {"platform"}
+    at_rest = eigen.damped(M, 0.0 * C, K, 6).frequencies
+    assert np.abs(at_rest / exact - 1.0).max() > 5e-3
 
 
 def tower_inertia(turbine: Turbine) -> np.ndarray:
@@ -195,9 +195,9 @@ def test_tower_under_the_weight_of_its_tip() -> None:
 
 
 def test_default_resolution_is_converged() -> None:
-    made = machine(small(), Resolution())
+    full_machine = machine(small(), Resolution())
     finer = machine(small(), Resolution(24, 48, 10, 16))
-    a, b = turbine_modes(made, OMEGA, 10).frequencies, turbine_modes(finer, OMEGA, 10).frequencies
+    a, b = turbine_modes(full_machine, OMEGA, 10).frequencies, turbine_modes(finer, OMEGA, 10).frequencies
     np.testing.assert_allclose(a, b, rtol=1e-5)
 
 
@@ -218,9 +218,9 @@ def test_torsion_of_a_shaft_between_rotor_and_generator() -> None:
         blade=replace(turbine.blade, stiffness=1e6 * turbine.blade.stiffness),
         tower=replace(turbine.tower, stiffness=1e6 * turbine.tower.stiffness),
     )
-    made = machine(stiff, SMALL)
-    inertia = rigid_rotor(stiff, made.blade_mesh)[5, 5]
-    solution = turbine_modes(made, 0.0, 1)
+    full_machine = machine(stiff, SMALL)
+    inertia = rigid_rotor(stiff, full_machine.blade_mesh)[5, 5]
+    solution = turbine_modes(full_machine, 0.0, 1)
     assert solution.names == ("drivetrain torsion",)
     assert solution.frequencies[0] == pytest.approx(np.sqrt(k * (1 / inertia + 1 / (ratio**2 * J))), rel=1e-4)
 
@@ -250,6 +250,6 @@ WRONG = {
 def test_a_wrong_machine_has_other_frequencies(name: str) -> None:
     """By far more than codes differ that solve the same machine (1e-6)."""
     turbine = small(4e5, Drivetrain(2e6, 0.3, 20.0, True))
-    right = turbine_modes(machine(turbine, ONE), OMEGA, 10).frequencies
-    wrong = turbine_modes(machine(WRONG[name](turbine), ONE), OMEGA, 10).frequencies
-    assert np.abs(wrong / right - 1.0).max() > 1e-4
+    correct = turbine_modes(machine(turbine, ONE), OMEGA, 10).frequencies
+    altered = turbine_modes(machine(WRONG[name](turbine), ONE), OMEGA, 10).frequencies
+    assert np.abs(altered / correct - 1.0).max() > 1e-4

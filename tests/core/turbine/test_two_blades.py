@@ -44,20 +44,20 @@ def test_two_blades_are_the_same_as_a_general_mechanism(turbine: Turbine) -> Non
     orbit = orbit_of(as_mechanism(turbine, ONE, OMEGA), "spin.rz")
     _, system = periodic(machine(turbine, ONE), OMEGA)
     assert system.harmonics == 2
-    found = [eigen.damped(*system.at(psi), 10).frequencies for psi in (0.3, 1.9)]
+    computed = [eigen.damped(*system.at(psi), 10).frequencies for psi in (0.3, 1.9)]
     exact = [eigen.damped(*orbit.matrices(psi), 10).frequencies for psi in (0.3, 1.9)]
-    np.testing.assert_allclose(found, exact, rtol=1e-8)
+    np.testing.assert_allclose(computed, exact, rtol=1e-8)
     assert np.abs(exact[0] / exact[1] - 1.0).max() > 1e-3
 
 
 def test_a_teetering_rotor_of_stiff_blades() -> None:
     """(I_z − I_x) Ω²/I_y about the hinge, of a body that spins about z and teeters about y; Ω without height along z."""
     turbine = replace(rigid(small(blades=2)), teeter=Teeter(0.3), hub=FLAT)
-    made = machine(turbine, SMALL)
-    a, _ = periodic(made, OMEGA)
+    full_machine = machine(turbine, SMALL)
+    a, _ = periodic(full_machine, OMEGA)
     (hinge,) = a.teeter
     x, y, z = np.diagonal(
-        transformed(rigid_rotor(turbine, made.blade_mesh), pose(np.eye(3), np.array([0.0, 0.0, -0.3])))
+        transformed(rigid_rotor(turbine, full_machine.blade_mesh), pose(np.eye(3), np.array([0.0, 0.0, -0.3])))
     )[3:]
     assert a.K[hinge, hinge] / a.M[hinge, hinge] == pytest.approx(OMEGA**2 * (z - x) / y, rel=1e-6)
     assert x > 1e-4 * y
@@ -94,10 +94,10 @@ def test_the_motions_used_at_first_do_not_matter() -> None:
 
 def test_a_mode_has_the_frequency_of_the_motion_that_names_it() -> None:
     """Other frequencies of a mode differ by multiples of Ω, and can move more mass: the lines do not jump between them."""
-    made = machine(small(blades=2), SMALL)
+    full_machine = machine(small(blades=2), SMALL)
     edge = []
     for omega in (3.6, 3.7, 3.8):
-        modes = turbine_modes(made, omega, 12)
+        modes = turbine_modes(full_machine, omega, 12)
         assert (np.diff(modes.frequencies) >= 0).all()
         edge += [f for f, n in zip(modes.frequencies, modes.names, strict=True) if n == "1st edge differential"]
     np.testing.assert_allclose(edge, 13.14, rtol=3e-3)
@@ -105,11 +105,11 @@ def test_a_mode_has_the_frequency_of_the_motion_that_names_it() -> None:
 
 
 def test_what_has_no_constant_modes_is_refused() -> None:
-    made = machine(small(blades=2), SMALL)
+    full_machine = machine(small(blades=2), SMALL)
     with pytest.raises(PeriodicError, match="two blades vary with the azimuth"):
-        assemble(made, OMEGA)
+        assemble(full_machine, OMEGA)
     with pytest.raises(PeriodicError, match="0 rad/s"):
-        turbine_modes(made, 0.0)
+        turbine_modes(full_machine, 0.0)
     with pytest.raises(ValueError, match="only a hub of two blades teeters"):
         machine(replace(small(), teeter=Teeter()), SMALL)
     with pytest.raises(ValueError, match="two or more"):

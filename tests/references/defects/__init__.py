@@ -123,14 +123,14 @@ def shown(defect: Defect, timeout: float = 120.0) -> str:
         RuntimeError: the code is not installed, or the script took longer than ``timeout`` seconds.
     """
     try:
-        done = subprocess.run(
+        process = subprocess.run(
             [defect.python, str(defect.path)], capture_output=True, text=True, timeout=timeout, check=False
         )
     except FileNotFoundError:
         raise RuntimeError(f"{defect.script}: not installed: southwell codes install {defect.environment}") from None
     except subprocess.TimeoutExpired:
         raise RuntimeError(f"{defect.script}: no answer within {timeout:g} s") from None
-    if done.returncode:
-        last = (done.stderr.strip().splitlines() or ["no message"])[-1]
+    if process.returncode:
+        last = (process.stderr.strip().splitlines() or ["no message"])[-1]
         raise RuntimeError(f"{defect.script}: {last}")
-    return done.stdout.strip()
+    return process.stdout.strip()

@@ -37,8 +37,8 @@ def deck():
 
 
 def main():
-    said = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout
-    print("ccx", *re.findall(r"Version\s+(\S+)", said))
+    version_text = subprocess.run(["ccx", "-v"], capture_output=True, text=True, check=False).stdout
+    print("ccx", *re.findall(r"Version\s+(\S+)", version_text))
     lines, ends = deck()
     with tempfile.TemporaryDirectory() as folder:
         Path(folder, "block.inp").write_text("\n".join(lines) + "\n")

@@ -16,7 +16,7 @@ EA, RATIO = 1e12, 1.0  # N, 1
 def main():
     own = output()
     expected = np.repeat(EULER[:2], 2)
-    sizes, said, lost = range(5, 25), set(), {}
+    sizes, message, lost = range(5, 25), set(), {}
     for method in METHODS:
         lost[method] = []
         for elements in sizes:
@@ -24,14 +24,14 @@ def main():
                 result = frequencies(method, elements, EA, RATIO)
             except RuntimeError as error:
                 lost[method].append(elements)
-                said.add(str(error))
+                message.add(str(error))
                 continue
             assert np.abs(result / expected - 1).max() < 2e-3, result
         print(
             f"{method}: no answer with {lost[method] or 'none'} of {sizes[0]} to {sizes[-1]} elements (expected: none)",
             file=own,
         )
-    print(f"said: {', '.join(said)}", file=own)
+    print(f"said: {', '.join(message)}", file=own)
     print("defect:", "present" if lost["subspace iteration"] else "gone", file=own)
 
 

@@ -34,7 +34,7 @@ def main():
     print(f"pin {version('pin')}")
     n = 12
     q, v, a = 0.1 * np.sin(np.arange(1.0, n + 1)), np.cos(np.arange(1.0, n + 1)), np.zeros(n)
-    wrong, force = {}, {}
+    altered, force = {}, {}
     for composite in (False, True):
         model = chain(composite)
         data = model.createData()
@@ -45,11 +45,11 @@ def main():
             (pin.rnea(model, data, q + h * e, v, a).copy(), pin.rnea(model, data, q - h * e, v, a)) for e in np.eye(n)
         )
         difference = np.array([(up - down) / (2 * h) for up, down in pairs]).T
-        wrong[composite] = np.abs(analytic - difference).max() / np.abs(difference).max()
+        altered[composite] = np.abs(analytic - difference).max() / np.abs(difference).max()
     print(f"torques, composite against four joints: {np.abs(force[True] - force[False]).max():.1e} apart")
-    print(f"dtau_dq against central differences, four joints:   {wrong[False]:.1e} (expected: rounding)")
-    print(f"dtau_dq against central differences, one composite: {wrong[True]:.1e} (expected: rounding)")
-    print("defect:", "present" if wrong[True] > 1e-6 else "gone")
+    print(f"dtau_dq against central differences, four joints:   {altered[False]:.1e} (expected: rounding)")
+    print(f"dtau_dq against central differences, one composite: {altered[True]:.1e} (expected: rounding)")
+    print("defect:", "present" if altered[True] > 1e-6 else "gone")
 
 
 if __name__ == "__main__":

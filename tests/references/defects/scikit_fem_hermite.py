@@ -26,11 +26,11 @@ def middle(length, element):
 def main():
     print(f"scikit-fem {version('scikit-fem')}")
     element = fem.ElementLineHermite()
-    first, again, new = middle(1.0, element), middle(2.0, element), middle(2.0, fem.ElementLineHermite())
+    first, second, new = middle(1.0, element), middle(2.0, element), middle(2.0, fem.ElementLineHermite())
     print(f"length 1:                       {first:g} (expected 192)")
-    print(f"length 2, the same element:     {again:g} (expected 24)")
+    print(f"length 2, the same element:     {second:g} (expected 24)")
     print(f"length 2, a new element:        {new:g} (expected 24)")
-    print("defect:", "gone" if np.isclose(again, 24.0) else "present")
+    print("defect:", "gone" if np.isclose(second, 24.0) else "present")
 
 
 if __name__ == "__main__":

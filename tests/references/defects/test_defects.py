@@ -33,10 +33,10 @@ def test_the_defect_is_present(defect: Defect) -> None:
     if not INSTALLED[defect.script.partition("_")[0]]:
         hint = f": southwell codes install {defect.environment}" if defect.environment else ""
         pytest.skip(f"not installed{hint}")
-    said = shown(defect).splitlines()
-    assert said[-1] == "defect: present", "fixed: remove it from the list"
-    assert "expected" in "".join(said[1:-1])
-    assert any(character.isdigit() for character in said[0]), "its first line names the version"
+    lines = shown(defect).splitlines()
+    assert lines[-1] == "defect: present", "fixed: remove it from the list"
+    assert "expected" in "".join(lines[1:-1])
+    assert any(character.isdigit() for character in lines[0]), "its first line names the version"
 
 
 @pytest.mark.parametrize("defect", DEFECTS, ids=lambda d: d.script)

@@ -165,9 +165,9 @@ class TestManners:
     def test_the_same_call_gives_the_same_bits_in_any_order(self, code):
         first = code.solve(unit(), 10.0, 8, 3)
         code.solve(PARK, 30.0, 5, 2)
-        again = code.solve(unit(), 10.0, 8, 3)
-        assert (first.frequencies == again.frequencies).all()
-        assert (first.shapes == again.shapes).all()
+        second = code.solve(unit(), 10.0, 8, 3)
+        assert (first.frequencies == second.frequencies).all()
+        assert (first.shapes == second.shapes).all()
 
 
 @both

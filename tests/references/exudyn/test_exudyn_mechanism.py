@@ -49,43 +49,43 @@ def assert_agreement(
     model = em.ExudynModel(mechanism)
     n, steady = len(model.names), null_space.linearize(model, guess)
     np.testing.assert_allclose(steady.q, state.q[:n], atol=1e-9)
-    theirs, free = model.at(state.q[:n]), steady.free
-    multipliers = np.linalg.lstsq(theirs.J[:, free].T, theirs.force[free], rcond=1e-9)[0]
+    expected, free = model.at(state.q[:n]), steady.free
+    multipliers = np.linalg.lstsq(expected.J[:, free].T, expected.force[free], rcond=1e-9)[0]
 
-    def near(name: str, ours: np.ndarray, other: np.ndarray, tolerance: float, size: float = 0.0) -> None:
-        scale = max(float(np.abs(ours).max(initial=0.0)), size)
-        assert np.abs(ours - other).max(initial=0.0) <= tolerance * scale, (name, ours, other)
+    def near(name: str, actual: np.ndarray, other: np.ndarray, tolerance: float, size: float = 0.0) -> None:
+        scale = max(float(np.abs(actual).max(initial=0.0)), size)
+        assert np.abs(actual - other).max(initial=0.0) <= tolerance * scale, (name, actual, other)
 
     # the tree, before any loop
     k = state.kinematics
     opened = dynamics.cartesian(tree, k)
     M, C, K = (a[:n, :n] for a in dynamics.tangent(tree, k, opened))
-    near("M*", M, theirs.M, 1e-13)
-    near("C*", C, theirs.C, 1e-11, float(np.abs(M).max()))
-    near("K*", K, theirs.K, 1e-9, float(np.abs(linear.K).max()))
+    near("M*", M, expected.M, 1e-13)
+    near("C*", C, expected.C, 1e-11, float(np.abs(M).max()))
+    near("K*", K, expected.K, 1e-9, float(np.abs(linear.K).max()))
     # the null space of the loops
-    null, part = null_space.null_space(theirs.J[:, free]), linear.partition
-    ours = scipy.linalg.orth(part.R[np.isin(part.free, np.arange(n))])
-    assert null.shape == ours.shape
-    assert scipy.linalg.subspace_angles(null, ours).max(initial=0.0) < 1e-8
+    null, part = null_space.null_space(expected.J[:, free]), linear.partition
+    own = scipy.linalg.orth(part.R[np.isin(part.free, np.arange(n))])
+    assert null.shape == own.shape
+    assert scipy.linalg.subspace_angles(null, own).max(initial=0.0) < 1e-8
     # reactions, as generalised forces on the free coordinates
     needed = dynamics.unbalanced(tree, k, opened, state.q, state.v)[free]
-    near("Jλ", needed, (multipliers @ theirs.J)[free], 1e-11, 1.0)
+    near("Jλ", needed, (multipliers @ expected.J)[free], 1e-11, 1.0)
     # reduced to the same independent coordinates
     order = cast(tuple[np.ndarray, np.ndarray], scipy.linalg.qr(null.T, pivoting=True, mode="r"))[1]
     chosen = np.sort(order[: null.shape[1]])
     names = tuple(tree.coordinates[free[j]] for j in chosen)
-    again = modal.about(tree, state, names)
-    reduced = null_space.along(theirs, free, null @ np.linalg.inv(null[chosen]))
+    second = modal.about(tree, state, names)
+    reduced = null_space.along(expected, free, null @ np.linalg.inv(null[chosen]))
     for name, a, b, tolerance in zip(
-        ("M̂", "Ĉ", "K̂"), (again.M, again.C, again.K), reduced, (1e-12, 1e-11, 1e-9), strict=True
+        ("M̂", "Ĉ", "K̂"), (second.M, second.C, second.K), reduced, (1e-12, 1e-11, 1e-9), strict=True
     ):
-        near(name, a, b, tolerance, float(np.abs(again.M).max()))
+        near(name, a, b, tolerance, float(np.abs(second.M).max()))
     # and modes
     solution, answer = mb.solve(mechanism, guess), em.CODE.solve_mechanism(mechanism, guess)
     largest = np.abs(solution.values).max()
     np.testing.assert_allclose(np.abs(answer.values), solution.frequencies, rtol=1e-9, atol=1e-9 * largest)
-    return linear, theirs, multipliers
+    return linear, expected, multipliers
 
 
 @pytest.mark.parametrize("cut", ["B", "C", "D"])
@@ -136,10 +136,10 @@ def test_a_pendulum_on_a_loop_joint_has_only_the_stiffness_of_constraint_curvatu
         gravity=(0, -G, 0),
     )
     guess = {"plane.x": 0.1, "plane.rz": 0.1}
-    _, theirs, multipliers = assert_agreement(m, guess)
+    _, expected, multipliers = assert_agreement(m, guess)
     answer = em.CODE.solve_mechanism(m, guess)
     assert np.abs(answer.values[0]) == pytest.approx(np.sqrt(mass * G * arm / (moment + mass * arm**2)), rel=1e-9)
-    assert np.abs(theirs.K).max() < 1e-9 * theirs.curvature(multipliers).max()
+    assert np.abs(expected.K).max() < 1e-9 * expected.curvature(multipliers).max()
 
 
 REFUSED = [

@@ -25,8 +25,10 @@ print(*sorted(name for name in sys.modules if name in ("exudyn.exudynCPP", "exud
 def solved(first: str) -> tuple[list[np.ndarray], str]:
     """Frequencies by each of Exudyn's codes, and the compiled module that was used."""
     script = SOLVE.format(first=first)
-    done = subprocess.run([sys.executable, "-P", "-c", script], capture_output=True, text=True, check=True, timeout=120)
-    *frequencies, module = done.stdout.splitlines()
+    process = subprocess.run(
+        [sys.executable, "-P", "-c", script], capture_output=True, text=True, check=True, timeout=120
+    )
+    *frequencies, module = process.stdout.splitlines()
     return [np.array(line.split(), float) for line in frequencies], module
 
 
@@ -37,5 +39,5 @@ def test_the_module_without_range_checks_gives_the_same_frequencies() -> None:
     fast, module = solved("")
     assert module in ("exudyn.exudynCPPfast", "exudyn.exudynCPP")  # the latter on a processor without AVX2
     assert [len(f) for f in fast] == [6, 6]
-    for answer, other in zip(fast, checked, strict=True):
-        np.testing.assert_allclose(answer, other, rtol=1e-9)
+    for answer, counterpart in zip(fast, checked, strict=True):
+        np.testing.assert_allclose(answer, counterpart, rtol=1e-9)

@@ -85,6 +85,6 @@ def test_coleman_and_feingold_with_one_stiffer_blade() -> None:
     strip = np.sort(np.abs(np.angle(by_time)) * OMEGA / (2 * np.pi) ** 2)[::2]
     np.testing.assert_allclose(strip, [0.03740962, 0.04310606, 0.05847881, 0.06171777, 0.09916926], atol=6e-9)
     np.testing.assert_allclose(np.abs(by_time), 1.0, atol=1e-6)
-    both = compared(linearize(machine, "shaft.rz")[0])
-    for exponents in (both.floquet, both.hill):
+    comparison = compared(linearize(machine, "shaft.rz")[0])
+    for exponents in (comparison.floquet, comparison.hill):
         assert distance(exponents.multipliers, by_time).max() < 1e-6

@@ -63,18 +63,18 @@ def test_order_where_sections_vary() -> None:
 def test_shapes_agree_with_core() -> None:
     """For the pitched, twisted blade, up to sign; real because there is no Coriolis force."""
     blade = replace(tapered(), pitch=0.4)
-    ours = CODE.solve(blade, 3.0, 60, 4).shapes[:, :, 1:3].real.reshape(4, -1)
-    theirs = solve.mesh_modes(blade, 3.0, 60, 4, effects=CODE.effects).shapes[:, :, 1:3].reshape(4, -1)
-    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
-    np.testing.assert_allclose(np.abs(np.sum(ours * theirs.conj(), axis=1)) / norms, 1, atol=1e-4)
+    actual = CODE.solve(blade, 3.0, 60, 4).shapes[:, :, 1:3].real.reshape(4, -1)
+    expected = solve.mesh_modes(blade, 3.0, 60, 4, effects=CODE.effects).shapes[:, :, 1:3].reshape(4, -1)
+    norms = np.linalg.norm(actual, axis=1) * np.linalg.norm(expected, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(actual * expected.conj(), axis=1)) / norms, 1, atol=1e-4)
 
 
 def test_the_request() -> None:
     """The forces sum to ∫ m Ω² x, the springs to m Ω² L; stiffness is the harmonic mean."""
-    asked: Any = request(replace(PARK, tip_mass=POINT), 10.0, np.linspace(0, 6, 21), 5)
-    assert sum(asked["force"]) == pytest.approx(100 * (1.2 * 6 * 3.3 + 7.2 * 6.3), rel=1e-12)
-    assert sum(asked["spring"]) == pytest.approx(100 * (7.2 + 7.2), rel=1e-12)
-    assert asked["EI_y"] == pytest.approx([14e3] * 20)
+    payload: Any = request(replace(PARK, tip_mass=POINT), 10.0, np.linspace(0, 6, 21), 5)
+    assert sum(payload["force"]) == pytest.approx(100 * (1.2 * 6 * 3.3 + 7.2 * 6.3), rel=1e-12)
+    assert sum(payload["spring"]) == pytest.approx(100 * (7.2 + 7.2), rel=1e-12)
+    assert payload["EI_y"] == pytest.approx([14e3] * 20)
     varying: Any = request(tapered(), 3.0, np.array([0.0, 4, 10, 20, 32, 40]), 5)
     # edge stiffness falls linearly from 6 to 3 GN m² between 4 and 10 m: the mean of its inverse is log 2 / 3
     assert varying["EI_z"][1] == pytest.approx(3e9 / np.log(2), rel=1e-5)

@@ -100,7 +100,7 @@ def test_the_installation_hint_if_missing() -> None:
 
 def test_an_environment_whose_system_libraries_are_missing_is_not_installed(monkeypatch: pytest.MonkeyPatch) -> None:
     """Before the packages are fetched, and in an environment that another machine has made."""
-    asked = pip(monkeypatch)
+    commands = pip(monkeypatch)
     needing = replace(ECHO, libraries=("lapack", "gfortran"), packages=("liblapack3", "libgfortran5"))
     result = {"lapack": "liblapack.so.3", "gfortran": "libgfortran.so.5"}
     monkeypatch.setattr(isolated, "find_library", result.get)
@@ -114,18 +114,18 @@ def test_an_environment_whose_system_libraries_are_missing_is_not_installed(monk
         isolated.ask(needing, {})
     with pytest.raises(isolated.EnvironmentMissingError, match=f"echo: {remedy}"):
         isolated.install(needing)
-    assert not asked
+    assert not commands
 
 
 def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
     """Record the pip commands, with the contents of requirements files; ``fails``: a package that is not found."""
-    asked: list[list[str]] = []
+    commands: list[list[str]] = []
     for pin in (*ECHO.requires, *ECHO.bare):
         monkeypatch.setitem(HASHES, pin, ("ab" * 32,))
 
     def run(command: list[str], **_: Any) -> subprocess.CompletedProcess[str]:
         command = [*command[:-1], *Path(command[-1]).read_text().splitlines()]
-        asked.append(command)
+        commands.append(command)
         bad = bool(fails) and any(word.startswith(fails) for word in command)
         return subprocess.CompletedProcess(
             command, int(bad), "", f"noise\nERROR: No matching distribution found for {fails}\n"
@@ -134,14 +134,14 @@ def pip(monkeypatch: pytest.MonkeyPatch, fails: str = "") -> list[list[str]]:
     monkeypatch.setattr(isolated.subprocess, "run", run)
     monkeypatch.setattr(isolated, "find_library", lambda name: name)  # whatever this system has
     monkeypatch.setattr(isolated.venv, "create", lambda folder, with_pip: folder.mkdir(parents=True))
-    return asked
+    return commands
 
 
 def test_installation_pins_versions_and_skips_dependencies(monkeypatch: pytest.MonkeyPatch) -> None:
-    asked = pip(monkeypatch)
+    commands = pip(monkeypatch)
     (ECHO.folder / "left over").mkdir(parents=True)
     assert isolated.install(ECHO) == ECHO.folder
-    ((python, *words),) = asked
+    ((python, *words),) = commands
     assert python == str(ECHO.python)
     assert {"--require-hashes", "--no-deps", "--only-binary=:all:"} <= set(words)
     assert words[-2:] == [f"{pin} --hash=sha256:{'ab' * 32}" for pin in ("one==1.0", "echo==2.5")]
@@ -159,9 +159,9 @@ def test_a_failed_installation_is_an_error(monkeypatch: pytest.MonkeyPatch) -> N
 
 
 def southwell(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(arguments)
-    return int(ended.value.code or 0)
+    return int(exit_info.value.code or 0)
 
 
 def test_the_command_line_installs(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:

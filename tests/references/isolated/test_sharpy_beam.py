@@ -84,12 +84,12 @@ def test_order(blade: Blade, omega: float, levels: tuple[int, int, int], order: 
 @needs_sharpy
 def test_shapes_agree_with_core() -> None:
     """For the curved, pitched blade: displacements and rotation, up to phase."""
-    ours, theirs = (
+    actual, expected = (
         m.reshape(5, -1)
         for m in (CODE.solve(curved(), 1.5, 48, 5).shapes, solve.mesh_modes(curved(), 1.5, 60, 5).shapes)
     )
-    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
-    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-4)
+    norms = np.linalg.norm(actual, axis=1) * np.linalg.norm(expected, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(actual.conj() * expected, axis=1)) / norms, 1, atol=1e-4)
 
 
 @needs_sharpy
@@ -101,17 +101,17 @@ def test_no_steady_state_at_high_speed() -> None:
 def test_the_request() -> None:
     """Total mass and compliance are those of the blade; sections have their undeformed axes."""
     blade, ends = tapered(), np.linspace(0, 40.0, 5)
-    asked = request(blade, 3.0, np.column_stack([ends[:-1], ends[1:]]))
+    payload = request(blade, 3.0, np.column_stack([ends[:-1], ends[1:]]))
     s = (np.arange(20000) + 0.5) * 40.0 / 20000
     np.testing.assert_allclose(
-        10 * np.array(asked["mass"]).sum(0)[0, 0], mass_at(blade, s)[:, 0, 0].sum() * 40 / 20000, rtol=2e-3
+        10 * np.array(payload["mass"]).sum(0)[0, 0], mass_at(blade, s)[:, 0, 0].sum() * 40 / 20000, rtol=2e-3
     )
     here = np.linalg.inv(request(blade, 3.0, np.array([[10.0, 10.0 + 1e-6]]))["stiffness"][0])  # twisted by 9° there
     turned = Rotation.from_rotvec([np.radians(9.0), 0, 0]).as_matrix()
     soft = turned @ np.diag(1 / np.diagonal(stiffness_at(blade, 10.0)[0]))[3:, 3:] @ turned.T
     np.testing.assert_allclose(here[3:, 3:], soft, rtol=1e-6, atol=1e-6 * soft.max())
     assert soft[1, 2] > 0.05 * soft[1, 1]
-    assert not np.array(asked["rotations"]).any()
+    assert not np.array(payload["rotations"]).any()
 
 
 def test_mass_and_compliance_are_scaled_from_arc_to_chord() -> None:
@@ -125,10 +125,10 @@ def test_mass_and_compliance_are_scaled_from_arc_to_chord() -> None:
         mass=np.repeat(PARK.mass[:1], 9, axis=0),
         twist=np.zeros(9),
     )
-    asked = request(quarter, 0.0, np.array([[0.0, np.pi / 2]]))
-    nodes = np.array(asked["nodes"])
+    payload = request(quarter, 0.0, np.array([[0.0, np.pi / 2]]))
+    nodes = np.array(payload["nodes"])
     chord = np.linalg.norm(nodes[2] - nodes[0])
-    assert chord * np.array(asked["mass"])[0, 0, 0] == pytest.approx(1.2 * np.pi / 2, rel=1e-9)
+    assert chord * np.array(payload["mass"])[0, 0, 0] == pytest.approx(1.2 * np.pi / 2, rel=1e-9)
 
 
 def test_rotation_about_x_from_a_change_of_the_rotation_vector() -> None:

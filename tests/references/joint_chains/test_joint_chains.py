@@ -73,9 +73,9 @@ def test_agrees_with_core_to_rounding(code: Any, blade: Blade, omega: float) -> 
 def test_shapes_agree_with_pinocchio(code: Any) -> None:
     """The same spline through the same nodes, so the same to rounding except for a phase."""
     pytest.importorskip("pinocchio")
-    ours, theirs = (c.solve(curved(), 1.5, 10, 5).shapes.reshape(5, -1) for c in (code, pinocchio_chain.CODE))
-    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
-    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-12)
+    actual, expected = (c.solve(curved(), 1.5, 10, 5).shapes.reshape(5, -1) for c in (code, pinocchio_chain.CODE))
+    norms = np.linalg.norm(actual, axis=1) * np.linalg.norm(expected, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(actual.conj() * expected, axis=1)) / norms, 1, atol=1e-12)
 
 
 @pytest.mark.parametrize(
@@ -93,18 +93,18 @@ def test_every_stage_agrees_with_pinocchio(make: Callable[[Mesh], ChainModel], r
     stages = []
     for model in (make(chain), pinocchio_chain.build(chain)):
         stages.append((model.mass(q), *model.inertial(q, 2.0), model.jacobian(q)))
-    for ours, theirs in zip(*stages, strict=True):
-        assert ours.shape == theirs.shape
-        np.testing.assert_allclose(ours, theirs, atol=rtol * np.abs(theirs).max(), rtol=0)
+    for actual, expected in zip(*stages, strict=True):
+        assert actual.shape == expected.shape
+        np.testing.assert_allclose(actual, expected, atol=rtol * np.abs(expected).max(), rtol=0)
 
 
 @both
 def test_the_same_call_gives_the_same_answer_and_prints_nothing(code: Any, capfd: pytest.CaptureFixture[str]) -> None:
     first = code.solve(tapered(), 2.0, 8, 4)
     code.solve(PARK, 10.0, 5, 4)
-    again = code.solve(tapered(), 2.0, 8, 4)
-    np.testing.assert_array_equal(first.frequencies, again.frequencies)
-    np.testing.assert_array_equal(first.shapes, again.shapes)
+    second = code.solve(tapered(), 2.0, 8, 4)
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
     assert capfd.readouterr().out == ""
 
 

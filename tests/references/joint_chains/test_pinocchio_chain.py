@@ -61,10 +61,10 @@ def test_agrees_with_core_to_rounding(blade: Blade, omega: float, elements: int)
 @pytest.mark.slow
 def test_shapes_agree_with_core() -> None:
     """Between nodes too: the chain's spline against core's shape functions."""
-    ours = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)
-    theirs = solve.mesh_modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="body_fixed").shapes.reshape(5, -1)
-    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
-    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=2e-3)
+    actual = CODE.solve(curved(), 1.5, 15, 5).shapes.reshape(5, -1)
+    expected = solve.mesh_modes(curved(), 1.5, 15, 5, mass="half_end", stiffness="body_fixed").shapes.reshape(5, -1)
+    norms = np.linalg.norm(actual, axis=1) * np.linalg.norm(expected, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(actual.conj() * expected, axis=1)) / norms, 1, atol=2e-3)
 
 
 def test_a_cantilever_of_point_masses_at_zero_speed() -> None:
@@ -157,9 +157,9 @@ def test_a_joint_with_a_wrong_derivative_is_detected() -> None:
 def test_the_same_call_gives_the_same_answer_and_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:
     first = CODE.solve(tapered(), 2.0, 8, 4)
     CODE.solve(PARK, 10.0, 5, 4)
-    again = CODE.solve(tapered(), 2.0, 8, 4)
-    np.testing.assert_array_equal(first.frequencies, again.frequencies)
-    np.testing.assert_array_equal(first.shapes, again.shapes)
+    second = CODE.solve(tapered(), 2.0, 8, 4)
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
     assert capfd.readouterr().out == ""
 
 

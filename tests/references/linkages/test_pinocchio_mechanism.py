@@ -37,8 +37,8 @@ pytestmark = pytest.mark.skipif(lm.CODE.version() is None, reason=f"not installe
 def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> null_space.Linearized:
     """Compare steady state, eigenvalues with damping, and shapes; return the adapter's equations."""
     solution, answer = mb.solve(mechanism, guess), lm.CODE.solve_mechanism(mechanism, guess)
-    ours = [solution.coordinates.index(name) for name in answer.coordinates]
-    np.testing.assert_allclose(answer.steady, solution.linear.state.q[ours], atol=1e-10)
+    own = [solution.coordinates.index(name) for name in answer.coordinates]
+    np.testing.assert_allclose(answer.steady, solution.linear.state.q[own], atol=1e-10)
     largest = float(np.abs(solution.values).max())
     assert len(answer.values) == len(solution.values)
     for value, shape in zip(answer.values, answer.shapes, strict=True):
@@ -46,8 +46,8 @@ def assert_agreement(mechanism: mb.Mechanism, guess: dict[str, float]) -> null_s
         assert abs(solution.values[k] - value) < 1e-9 * largest
         near = np.abs(solution.values - value) < 1e-3 * largest
         if near.sum() == 1:
-            theirs = solution.shapes[k, ours]
-            mac = abs(np.vdot(theirs, shape)) ** 2 / (np.vdot(theirs, theirs) * np.vdot(shape, shape)).real
+            expected = solution.shapes[k, own]
+            mac = abs(np.vdot(expected, shape)) ** 2 / (np.vdot(expected, expected) * np.vdot(shape, shape)).real
             assert mac > 1 - 1e-6
     return null_space.linearize(PinocchioTree(mechanism), guess)
 

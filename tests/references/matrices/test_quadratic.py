@@ -91,9 +91,9 @@ def test_stiff_coordinates_do_not_reduce_the_accuracy(way):
 def test_the_same_call_gives_the_same_bits(way):
     points, form = way
     M, C, K = (form(matrix) for matrix in row(points, 0.01)[:3])
-    first, again = gyroscopic_modes(M, C, K, 6), gyroscopic_modes(M, C, K, 6)
-    assert (first[0] == again[0]).all()
-    assert (first[1] == again[1]).all()
+    first, second = gyroscopic_modes(M, C, K, 6), gyroscopic_modes(M, C, K, 6)
+    assert (first[0] == second[0]).all()
+    assert (first[1] == second[1]).all()
 
 
 def test_no_stable_steady_state_is_an_error_with_the_lowest_eigenvalue(way):
@@ -111,13 +111,13 @@ def test_a_negative_diagonal_is_no_stable_steady_state():
 
 
 @pytest.mark.parametrize(
-    ("which", "entry", "message"),
+    ("kind", "entry", "message"),
     [(0, (0, 5), "M: .* from symmetric"), (1, (2, 2), "C: .* from skew"), (2, (0, 5), "K: .* from symmetric")],
 )
-def test_matrices_without_the_required_symmetry_are_an_error(way, which, entry, message):
+def test_matrices_without_the_required_symmetry_are_an_error(way, kind, entry, message):
     points, form = way
     matrices = list(row(points, 0.01)[:3])
-    matrices[which][entry] += 1e-3
+    matrices[kind][entry] += 1e-3
     M, C, K = (form(matrix) for matrix in matrices)
     with pytest.raises(CodeError, match=message):
         gyroscopic_modes(M, C, K, 4)
@@ -146,11 +146,11 @@ def test_operators_are_as_good_as_matrices(points):
         assert np.linalg.norm(force - w**2 * (M @ q) + 1j * w * (C @ q)) < 1e-8 * np.linalg.norm(force)
 
 
-@pytest.mark.parametrize(("wrong", "reported"), [(0, "M: .* from symmetric"), (1, "C: .* from skew")])
-def test_an_operator_without_its_symmetry_is_refused(wrong, reported):
+@pytest.mark.parametrize(("invalid", "reported"), [(0, "M: .* from symmetric"), (1, "C: .* from skew")])
+def test_an_operator_without_its_symmetry_is_refused(invalid, reported):
     matrices = list(row(DENSE, 0.05))[:3]
-    matrices[wrong] = matrices[wrong].copy()
-    matrices[wrong][0, 5] += 1e-2
+    matrices[invalid] = matrices[invalid].copy()
+    matrices[invalid][0, 5] += 1e-2
     M, C, K = matrices
     with pytest.raises(CodeError, match=reported):
         gyroscopic_modes(aslinearoperator(M), aslinearoperator(C), K, 8)

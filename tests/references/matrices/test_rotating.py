@@ -69,11 +69,11 @@ def test_blades_numbered_backwards_and_unequal_ones_are_refused() -> None:
     pytest.importorskip("pinocchio")
     backwards = replace(coleman_feingold(1.6), equal_blades=tuple(group[::-1] for group in LAG))
     unequal = replace(coleman_feingold(1.6, stiffer=1.05), equal_blades=LAG)
-    for wrong in (backwards, unequal):
+    for invalid in (backwards, unequal):
         with pytest.raises(CodeError, match="also in Fourier coordinates"):
-            PINOCCHIO.mechanism_modes(wrong, {})
+            PINOCCHIO.mechanism_modes(invalid, {})
         with pytest.raises(mb.MechanismError, match="equal_blades: azimuth: the matrices vary"):
-            mb.solve(wrong)
+            mb.solve(invalid)
 
 
 def test_unknown_coordinates_and_a_rotor_at_rest() -> None:

@@ -60,9 +60,9 @@ def test_a_fingerprint_comes_back_as_it_is() -> None:
 @pytest.mark.parametrize("field", ["mass", "first_moments", "rotor_inertia", "start", "flexibility", "inertia"])
 def test_a_fingerprint_that_is_not_finite_is_refused(field: str) -> None:
     value = getattr(FLEXIBLE, field)
-    wrong = (np.nan, *value[1:]) if isinstance(value, tuple) else np.nan
+    altered = (np.nan, *value[1:]) if isinstance(value, tuple) else np.nan
     with pytest.raises(NonsenseError, match=field):
-        fingerprint(wire.encode(FLEXIBLE) | {field: wrong})
+        fingerprint(wire.encode(FLEXIBLE) | {field: altered})
 
 
 def test_a_value_of_the_wrong_kind_is_quoted() -> None:

@@ -12,8 +12,8 @@ from southwell.references.protocol.registry import UnknownCodeError
 def test_it_serves_every_start() -> None:
     prepared = launch.prepare()
     for _ in range(2):
-        (said,) = describe(["exact-beam"])
-        assert said.failure is None
+        (description_,) = describe(["exact-beam"])
+        assert description_.failure is None
         assert launch.prepare() is prepared
     assert prepared.process.poll() is None
 
@@ -22,8 +22,8 @@ def test_a_killed_one_is_replaced() -> None:
     prepared = launch.prepare()
     prepared.process.kill()
     prepared.process.wait()
-    (said,) = describe(["exact-beam"])
-    assert said.failure is None
+    (description_,) = describe(["exact-beam"])
+    assert description_.failure is None
     assert launch.prepare() is not prepared
 
 

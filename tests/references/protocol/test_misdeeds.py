@@ -44,8 +44,10 @@ def does(misdeed: Misdeed, folder: Path) -> tuple[Description, list[Modes | Fail
     limits = replace(LIMITS, seconds=misdeed.seconds)
     if misdeed.when in ("unsupported", "solve"):
         return Description(path, path), answers(path, BLADE, RUNS, limits)
-    (said,) = describe([path], limits=limits)
-    return said, [said.failure] * len(RUNS) if said.failure else answers(path, BLADE, RUNS, limits)
+    (description_,) = describe([path], limits=limits)
+    return description_, [description_.failure] * len(RUNS) if description_.failure else answers(
+        path, BLADE, RUNS, limits
+    )
 
 
 @pytest.fixture(scope="module")
@@ -58,10 +60,10 @@ def done(folder: Path) -> dict[Misdeed, tuple[Description, list[Modes | Failure]
 
 @pytest.mark.parametrize("misdeed", TABLE, ids=lambda m: f"{m.when}-{m.name}")
 def test_a_misdeed_affects_its_cells_only_and_is_reported(misdeed: Misdeed, done: dict) -> None:
-    said, got = done[misdeed]
-    assert "".join("F" if isinstance(answer, Failure) else "M" for answer in got) == LEFT[misdeed.lost], got
-    assert not said.failure or said.name.startswith("mis")
-    for failure in (answer for answer in got if isinstance(answer, Failure)):
+    message, replies = done[misdeed]
+    assert "".join("F" if isinstance(answer, Failure) else "M" for answer in replies) == LEFT[misdeed.lost], replies
+    assert not message.failure or message.name.startswith("mis")
+    for failure in (answer for answer in replies if isinstance(answer, Failure)):
         assert misdeed.reason in failure.reason
         assert failure.reason.isprintable()
         assert len(failure.reason) <= 400
@@ -82,8 +84,8 @@ def test_nothing_is_left_running(done: dict) -> None:
 def test_invalid_declarations_are_quoted(folder: Path) -> None:
     """In one process, as none of them ends it; each is a separate code."""
     paths = declaring(folder)
-    said = description._asked({path: registry.address(path) for path in paths.values()}, [], LIMITS)
-    for (line, reported), description_ in zip(DECLARATIONS.items(), said, strict=True):
+    descriptions = description._asked({path: registry.address(path) for path in paths.values()}, [], LIMITS)
+    for (line, reported), description_ in zip(DECLARATIONS.items(), descriptions, strict=True):
         assert description_.failure, line
         assert description_.failure.kind == "nonsense", line
         assert reported in description_.failure.reason, (line, description_.failure.reason)
@@ -93,8 +95,8 @@ def test_invalid_declarations_are_quoted(folder: Path) -> None:
 def test_invalid_answers_are_quoted_and_affect_no_other(folder: Path) -> None:
     path = answering(folder)
     runs = [run for number in range(len(ANSWERS)) for run in ((10.0 + number, 10, 3), (1.0, 10, 3))]
-    got = answers(path, BLADE, runs, Limits(30.0))
-    for (line, reported), bad, good in zip(ANSWERS.items(), got[::2], got[1::2], strict=True):
+    answer = answers(path, BLADE, runs, Limits(30.0))
+    for (line, reported), bad, good in zip(ANSWERS.items(), answer[::2], answer[1::2], strict=True):
         assert isinstance(good, Modes), (line, good)
         assert isinstance(bad, Failure), line
         assert bad.kind == ("refused" if "CodeError" in line else "nonsense"), (line, bad)
@@ -126,7 +128,7 @@ def test_no_file_of_the_current_folder_shadows_a_module(folder: Path) -> None:
         lines
         + "    unsupported = lambda self, blade: None\n    modes = lambda self, *a: good(*a[1:])\nCODE = Code()\n",
     )
-    (ours, own_answer) = describe(["yoo-shin", "lawful:CODE"], limits=Limits(30.0))
-    assert (ours.failure, own_answer.failure, own_answer.name) == (None, None, "by-my-neighbour")
+    (actual, own_answer) = describe(["yoo-shin", "lawful:CODE"], limits=Limits(30.0))
+    assert (actual.failure, own_answer.failure, own_answer.name) == (None, None, "by-my-neighbour")
     (answer,) = answers("lawful:CODE", BLADE, RUNS[:1], Limits(30.0))
     assert isinstance(answer, Modes)

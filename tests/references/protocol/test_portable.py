@@ -47,10 +47,10 @@ def test_a_spawned_code_gives_the_answers_of_a_forked_one(monkeypatch: pytest.Mo
     spawned = worker.answers("exact-beam", BLADE, runs, Limits())
     monkeypatch.undo()
     forked = worker.answers("exact-beam", BLADE, runs, Limits())
-    for answer, other in zip(spawned, forked, strict=True):
+    for answer, counterpart in zip(spawned, forked, strict=True):
         assert not isinstance(answer, Failure)
-        assert not isinstance(other, Failure)
-        np.testing.assert_array_equal(answer.frequencies, other.frequencies)
+        assert not isinstance(counterpart, Failure)
+        np.testing.assert_array_equal(answer.frequencies, counterpart.frequencies)
 
 
 MODULES = {
@@ -78,8 +78,8 @@ def test_every_command_imports_without_the_modules_that_windows_lacks() -> None:
     program = (
         AS_ON_WINDOWS + f"import importlib\nfor name in {targets}: importlib.import_module('southwell.reports.' + name)"
     )
-    done = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
-    assert done.returncode == 0, done.stderr
+    process = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+    assert process.returncode == 0, process.stderr
 
 
 @pytest.mark.slow
@@ -104,8 +104,8 @@ def test_commands_work_with_spawn_alone(line: str, tmp_path: Path) -> None:
     beam = BEAM.replace("rad_s = [0.0, 10.0]", "rad_s = [0.0]")
     (tmp_path / "beam.toml").write_text(beam)
     command = [sys.executable, "-P", "start.py"]
-    done = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=300)
-    assert done.returncode == 0, done.stderr + done.stdout
+    process = subprocess.run(command, capture_output=True, text=True, cwd=tmp_path, timeout=300)
+    assert process.returncode == 0, process.stderr + process.stdout
     assert {"modes": "at rest", "campbell": "campbell.csv", "verify": "Yes: nothing contradicts"}[
         line.split()[0]
-    ] in done.stdout
+    ] in process.stdout

@@ -36,12 +36,12 @@ def test_a_change_of_any_file_changes_the_digest(package: Path, name: str) -> No
 
 
 def test_a_file_that_moves_or_appears_changes_the_digest(package: Path) -> None:
-    seen = {digest()}
+    digests = {digest()}
     (package / "core/a.py").rename(package / "core/c.py")
-    seen.add(digest())
+    digests.add(digest())
     (package / "core/new.py").write_text("")
-    seen.add(digest())
-    assert len(seen) == 3
+    digests.add(digest())
+    assert len(digests) == 3
 
 
 def test_a_library_s_version_changes_the_digest(package: Path, monkeypatch: pytest.MonkeyPatch) -> None:

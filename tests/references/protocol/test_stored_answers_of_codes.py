@@ -1,4 +1,4 @@
-"""Answers of codes taken from the store: every part of the key counts, and only what is missing is asked for."""
+"""Answers of codes taken from the store: every part of the key counts, and only what is missing is requests for."""
 
 import json
 import platform
@@ -22,24 +22,24 @@ BLADE = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1 / 3, EI_z=1.4e4, 
 RUNS = [(0.0, 10, 3), (2.0, 10, 3), (0.5, 20, 3)]
 REUSE = Limits(60.0, reuse=True)
 
-Asked = list[list[list[float]]]
+Requests = list[list[list[float]]]
 
 
 @pytest.fixture
-def asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Asked:
+def requests(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Requests:
     """The runs of every request that reaches a process; it answers with the speed in its frequencies."""
-    seen: Asked = []
+    observed: Requests = []
 
     def converse(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
         runs = json.loads(request)["runs"]
-        seen.append(runs)
+        observed.append(runs)
         lines = [json.dumps({"run": k, "modes": encode(_modes(*run))}).encode() for k, run in enumerate(runs)]
         return lines[:expected], Failure("crashed", "ended")
 
     monkeypatch.delenv(store.FRESH, raising=False)
     monkeypatch.setenv("SOUTHWELL_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(worker, "converse", converse)
-    return seen
+    return observed
 
 
 def _modes(omega: float, elements: int, count: int) -> Modes:
@@ -52,17 +52,17 @@ def ask(**changed: Any) -> list[Answer]:
     return answers(**(given | changed))
 
 
-def test_only_what_is_missing_is_asked_for(asked: Asked) -> None:
+def test_only_what_is_missing_is_asked_for(requests: Requests) -> None:
     ask(runs=RUNS[:1])
     more = ask(runs=[RUNS[1], RUNS[0], RUNS[2]])
-    assert asked == [[[0.0, 10, 3]], [[2.0, 10, 3], [0.5, 20, 3]]]
+    assert requests == [[[0.0, 10, 3]], [[2.0, 10, 3], [0.5, 20, 3]]]
     for run, modes in zip([RUNS[1], RUNS[0], RUNS[2]], more, strict=True):
         assert isinstance(modes, Modes)
         assert (modes.omega, modes.elements) == run[:2]
         np.testing.assert_array_equal(modes.frequencies, _modes(*run).frequencies)
         np.testing.assert_array_equal(modes.shapes, _modes(*run).shapes)
     ask()
-    assert len(asked) == 2
+    assert len(requests) == 2
 
 
 @pytest.mark.parametrize(
@@ -76,13 +76,13 @@ def test_only_what_is_missing_is_asked_for(asked: Asked) -> None:
         {"version": "1.1"},
     ],
 )
-def test_every_part_of_the_question_counts(asked: Asked, changed: dict[str, Any]) -> None:
+def test_every_part_of_the_question_counts(requests: Requests, changed: dict[str, Any]) -> None:
     request = {"runs": [RUNS[1]]}
     ask(**request)
     ask(**request)
-    assert len(asked) == 1
+    assert len(requests) == 1
     ask(**(request | changed))
-    assert len(asked) == 2
+    assert len(requests) == 2
 
 
 @pytest.mark.parametrize(
@@ -93,26 +93,26 @@ def test_every_part_of_the_question_counts(asked: Asked, changed: dict[str, Any]
     ],
 )
 def test_source_and_machine_count(
-    asked: Asked, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch], None]
+    requests: Requests, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch], None]
 ) -> None:
     ask()
     change(monkeypatch)
     ask()
-    assert len(asked) == 2
+    assert len(requests) == 2
 
 
 @pytest.mark.parametrize(
     "changed", [{"limits": replace(REUSE, reuse=False)}, {"version": ""}, {"name": "elsewhere:CODE"}]
 )
-def test_what_is_never_stored(asked: Asked, changed: dict[str, Any]) -> None:
+def test_what_is_never_stored(requests: Requests, changed: dict[str, Any]) -> None:
     """Answers when reuse is not wanted, of a code of unknown version, and of a code that is not part of this package."""
     ask(**changed)
     ask(**changed)
     ask()
-    assert len(asked) == 3
+    assert len(requests) == 3
 
 
-def test_failures_are_not_stored(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_failures_are_not_stored(requests: Requests, monkeypatch: pytest.MonkeyPatch) -> None:
     def fails(module: str, request: bytes, expected: int, limits: Limits) -> tuple[list[bytes], Failure]:
         reply = {"run": 0, "kind": "refused", "reason": "no steady state"}
         return [json.dumps(reply).encode()], Failure("timed out", "no answer within 60 s")
@@ -121,29 +121,29 @@ def test_failures_are_not_stored(asked: Asked, monkeypatch: pytest.MonkeyPatch) 
         m.setattr(worker, "converse", fails)
         assert [a.kind for a in ask() if isinstance(a, Failure)] == ["refused", "timed out", "timed out"]
     assert all(isinstance(a, Modes) for a in ask())
-    assert asked == [[list(run) for run in RUNS]]
+    assert requests == [[list(run) for run in RUNS]]
 
 
-def test_a_damaged_answer_is_computed_again(asked: Asked, tmp_path: Path) -> None:
+def test_a_damaged_answer_is_computed_again(requests: Requests, tmp_path: Path) -> None:
     before = ask()
     base = sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None)
     base.execute("update answers set value = replace(value, '.', '')")
     after = ask()
-    assert len(asked) == 2
+    assert len(requests) == 2
     for a, b in zip(before, after, strict=True):
         assert isinstance(a, Modes)
         assert isinstance(b, Modes)
         np.testing.assert_array_equal(a.frequencies, b.frequencies)
 
 
-def test_the_time_of_a_stored_answer_is_not_reported_as_measured(asked: Asked) -> None:
-    first, again = ask(runs=RUNS[:1]), ask(runs=RUNS[:1])
+def test_the_time_of_a_stored_answer_is_not_reported_as_measured(requests: Requests) -> None:
+    first, second = ask(runs=RUNS[:1]), ask(runs=RUNS[:1])
     assert isinstance(first[0], Modes)
-    assert isinstance(again[0], Modes)
-    assert (first[0].seconds, np.isnan(again[0].seconds)) == (0.25, True)
+    assert isinstance(second[0], Modes)
+    assert (first[0].seconds, np.isnan(second[0].seconds)) == (0.25, True)
 
 
-def test_an_array_is_made_once_for_each_question(asked: Asked, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_array_is_made_once_for_each_question(requests: Requests, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[float] = []
 
     def array(x: float, label: str = "array") -> Any:

@@ -30,8 +30,8 @@ def failure(answer: Modes | Failure) -> Failure:
 
 
 def test_answers_come_back_bit_for_bit_and_in_order() -> None:
-    got = ask("WELL_BEHAVED")
-    for run, modes in zip(RUNS, got, strict=True):
+    answer = ask("WELL_BEHAVED")
+    for run, modes in zip(RUNS, answer, strict=True):
         assert isinstance(modes, Modes)
         assert (modes.omega, modes.elements, len(modes.frequencies)) == run
         np.testing.assert_array_equal(modes.shapes, np.full((3, 21, 4), 1.0 / 3.0 + 2.0j / 7.0))

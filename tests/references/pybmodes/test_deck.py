@@ -31,9 +31,9 @@ def read(path: Path, mount: Mount) -> tuple[Blade, Deck]:
     return result.blade, deck(BladeFile(path, result.blade, result.source, mount))
 
 
-def extrapolated(given: Deck, blade: Blade, omega: float) -> NDArray[Any]:
+def extrapolated(deck: Deck, blade: Blade, omega: float) -> NDArray[Any]:
     """Frequencies without the error of second order."""
-    coarse, fine = (CODE.with_deck(given).solve(blade, omega, n, 3).frequencies for n in (20, 40))
+    coarse, fine = (CODE.with_deck(deck).solve(blade, omega, n, 3).frequencies for n in (20, 40))
     return fine + (fine - coarse) / 3.0
 
 

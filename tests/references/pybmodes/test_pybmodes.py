@@ -104,10 +104,10 @@ def test_order(blade: Blade, omega: float, levels: tuple[int, ...], order: int) 
 def test_shapes_are_those_of_core() -> None:
     """Displacements by pairing, and the signs of the axes from the modes of a pitched, twisted blade."""
     blade = replace(tapered(), pitch=0.4)
-    ours = CODE.solve(blade, 3.0, 160, 4).shapes.reshape(4, -1)
-    theirs = solve.mesh_modes(blade, 3.0, 160, 4, effects=CODE.effects).shapes.reshape(4, -1)
-    norms = np.linalg.norm(ours, axis=1) * np.linalg.norm(theirs, axis=1)
-    np.testing.assert_allclose(np.abs(np.sum(ours.conj() * theirs, axis=1)) / norms, 1, atol=1e-5)
+    actual = CODE.solve(blade, 3.0, 160, 4).shapes.reshape(4, -1)
+    expected = solve.mesh_modes(blade, 3.0, 160, 4, effects=CODE.effects).shapes.reshape(4, -1)
+    norms = np.linalg.norm(actual, axis=1) * np.linalg.norm(expected, axis=1)
+    np.testing.assert_allclose(np.abs(np.sum(actual.conj() * expected, axis=1)) / norms, 1, atol=1e-5)
 
 
 @pytest.mark.parametrize("elements", [3, 7, 20])
@@ -198,8 +198,8 @@ def test_why_mass_centres_off_the_axis_are_declined(monkeypatch: pytest.MonkeyPa
     mass[2, 3] = mass[3, 2] = m * e
     blade = replace(blade, mass=np.repeat(mass[None], 2, axis=0))
     assert "mass centres off the axis" in (CODE.unsupported(blade) or "")
-    ours = solve.mesh_modes(blade, 2 * np.pi, 80, 5, effects=Effects(coriolis=False)).frequencies
-    np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], ours, rtol=1e-4)
+    actual = solve.mesh_modes(blade, 2 * np.pi, 80, 5, effects=Effects(coriolis=False)).frequencies
+    np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], actual, rtol=1e-4)
 
 
 def test_the_other_blades_of_these_tests_are_accepted() -> None:
@@ -222,9 +222,9 @@ def test_unused_entries_of_the_input_file(tmp_path: Path) -> None:
         for value in ("0.0", "0.5") if "rpm" in line else ("0.0", "20.0"):
             path.write_text(text.replace(line, value + line[3:]))
             answers.append(pybmodes_beam._pybmodes().RotatingBlade(path).run(4, check_model=False).frequencies)
-    plain, coned, _, pitched, still, half = answers
+    plain, coned, _, pitched, at_rest, half = answers
     np.testing.assert_array_equal([coned, pitched], [plain, plain])
-    assert (still < half).all()  # an entry that is used changes the result
+    assert (at_rest < half).all()  # an entry that is used changes the result
     assert (half < plain).all()
 
 
@@ -232,9 +232,9 @@ def test_it_leaves_no_files_and_is_repeatable(monkeypatch: pytest.MonkeyPatch, t
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
     first = CODE.solve(tapered(), 2.0, 20, 4)
     CODE.solve(PARK, 10.0, 5, 4)
-    again = CODE.solve(tapered(), 2.0, 20, 4)
-    np.testing.assert_array_equal(first.frequencies, again.frequencies)
-    np.testing.assert_array_equal(first.shapes, again.shapes)
+    second = CODE.solve(tapered(), 2.0, 20, 4)
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
     assert os.listdir(tmp_path) == []
 
 
@@ -243,16 +243,18 @@ def test_a_mode_that_the_iteration_misses_is_found(doubted: bool, monkeypatch: p
     """The first answer lacks one of a double pair."""
     monkeypatch.setattr(pybmodes_beam, "_moves", lambda _: True)
     monkeypatch.setattr(pybmodes_beam, "_at_stations", lambda shapes, *_: np.array(shapes))
-    all_, asked = np.array([1.0, 2.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]), []
+    all_, requested_counts = np.array([1.0, 2.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0]), []
 
     def run(count: int, **_: bool) -> SimpleNamespace:
-        asked.append(count)
-        result = np.delete(all_, 1)[:count] if len(asked) == 1 else all_[:count]
-        return SimpleNamespace(frequencies=result * (1.0 + 1e-8 * len(asked)), shapes=list(range(len(result))))
+        requested_counts.append(count)
+        result = np.delete(all_, 1)[:count] if len(requested_counts) == 1 else all_[:count]
+        return SimpleNamespace(
+            frequencies=result * (1.0 + 1e-8 * len(requested_counts)), shapes=list(range(len(result)))
+        )
 
     rotor = SimpleNamespace(run=run)
     frequencies, shapes = pybmodes_beam.moving(rotor, (1.0, 1.0), count=3, doubted=doubted, limit=10)
-    assert asked == ([5, 10] if doubted else [5])
+    assert requested_counts == ([5, 10] if doubted else [5])
     expected = [1.0, 2.0, 2.0] if doubted else [1.0, 2.0, 3.0]
     np.testing.assert_allclose(frequencies, 2 * np.pi * np.array(expected), rtol=1e-6)
     assert len(shapes) == 3

@@ -120,9 +120,9 @@ def second_differences(f: Callable[[Array], float], n: int) -> Array:
 def test_the_line_agrees_with_core() -> None:
     blade = curved()
     s = np.array([[1.0, 3.0], [12.0, 19.0], [21.0, 39.0]])
-    result, theirs = line(blade, s), sections.frames(blade, s.ravel()).reshape(3, 2, 4, 4)
-    np.testing.assert_allclose(result.position, theirs[..., :3, 3], atol=1e-12)
-    np.testing.assert_allclose(result.axes, theirs[..., :3, :3], atol=1e-14)
+    result, expected = line(blade, s), sections.frames(blade, s.ravel()).reshape(3, 2, 4, 4)
+    np.testing.assert_allclose(result.position, expected[..., :3, 3], atol=1e-12)
+    np.testing.assert_allclose(result.axes, expected[..., :3, :3], atol=1e-14)
 
 
 @needs_scikit_fem

@@ -73,8 +73,8 @@ def test_fourth_order(blade: Blade, omega: float, levels: tuple[int, ...], count
 @pytest.mark.parametrize("hub_ratio", [0.0, 1.0])
 def test_large_stretch_agrees_with_nonlinear_theory(hub_ratio: float, gamma: float) -> None:
     """Slenderness 70: steady strains of 1 % to over 50 %, against a nonlinear code without analytical linearisation."""
-    ours = frequencies(yoo_shin(hub_ratio), gamma, 80, 8)
-    np.testing.assert_allclose(ours, ANCF.solve(yoo_shin(hub_ratio), gamma, 80, 8).frequencies, rtol=2e-7)
+    actual = frequencies(yoo_shin(hub_ratio), gamma, 80, 8)
+    np.testing.assert_allclose(actual, ANCF.solve(yoo_shin(hub_ratio), gamma, 80, 8).frequencies, rtol=2e-7)
 
 
 @pytest.mark.parametrize(
@@ -173,9 +173,9 @@ def test_the_same_call_gives_the_same_answer_after_other_calls() -> None:
     """A Hermite element reused on another mesh would silently give the result of the first."""
     first = CODE.solve(PARK, 10.0, 7, 4)
     CODE.solve(tapered(), 1.0, 31, 4)
-    again = CODE.solve(PARK, 10.0, 7, 4)
-    np.testing.assert_array_equal(first.frequencies, again.frequencies)
-    np.testing.assert_array_equal(first.shapes, again.shapes)
+    second = CODE.solve(PARK, 10.0, 7, 4)
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
 
 
 def test_prints_nothing(capfd: pytest.CaptureFixture[str]) -> None:

@@ -56,14 +56,14 @@ def test_twisted_blade_three_ways(omega: float) -> None:
     The five lowest modes, the fifth is torsion. Without Coriolis forces, which CalculiX leaves out: 9e-5 of a
     frequency.
     """
-    theirs = calculix.modes(twisted(), STEEL, omega, 6, clamped_section(ROOT))
-    ours = twisted_modes(omega, coriolis=False)
-    np.testing.assert_allclose(theirs.frequencies[:5], ours.frequencies[:5], rtol=1e-3)
-    assert (mac(theirs, ours).diagonal()[:5] > 0.99).all()
+    expected = calculix.modes(twisted(), STEEL, omega, 6, clamped_section(ROOT))
+    actual = twisted_modes(omega, coriolis=False)
+    np.testing.assert_allclose(expected.frequencies[:5], actual.frequencies[:5], rtol=1e-3)
+    assert (mac(expected, actual).diagonal()[:5] > 0.99).all()
     chain = mesh_from_segments(segments_in_place(), at(ROOT))
     compressed = chain_modes(chain, omega, 6, effects=Effects(coriolis=False))
-    np.testing.assert_allclose(compressed.frequencies[:5], theirs.frequencies[:5], rtol=2.5e-3)
-    assert (mac(theirs, compressed).diagonal()[:5] > 0.99).all()
+    np.testing.assert_allclose(compressed.frequencies[:5], expected.frequencies[:5], rtol=2.5e-3)
+    assert (mac(expected, compressed).diagonal()[:5] > 0.99).all()
 
 
 def tie(model: ties.FiniteElements, x: float, weights: np.ndarray) -> ties.Tie:

@@ -93,9 +93,9 @@ def test_torsional_modes_are_left_out() -> None:
 
 @needs_ccx
 def test_the_same_call_gives_the_same_answer() -> None:
-    first, again = (CODE.solve(PARK, 5.0, 10, 4) for _ in range(2))
-    np.testing.assert_array_equal(first.frequencies, again.frequencies)
-    np.testing.assert_array_equal(first.shapes, again.shapes)
+    first, second = (CODE.solve(PARK, 5.0, 10, 4) for _ in range(2))
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
 
 
 @pytest.mark.parametrize(

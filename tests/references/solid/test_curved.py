@@ -217,10 +217,10 @@ def test_calculix_finds_the_same_modes_of_the_whole_solid(omega: float) -> None:
     sections = [
         (layer(bricks, 2 * k), position) for k, position in enumerate(CURVED.position(STATIONS * CURVED.length))
     ]
-    ours = hexahedra.modes(bricks, CURVED.material, omega, 6, root, coriolis=False, sections=sections)
-    theirs = calculix_blade.CODE.solve(case(), omega, 20, 6)
-    np.testing.assert_allclose(theirs.frequencies, ours.frequencies, rtol=3e-4)
-    assert (np.diag(mac(ours.shapes, theirs.shapes, weights(case()))) > 0.999).all()
+    actual = hexahedra.modes(bricks, CURVED.material, omega, 6, root, coriolis=False, sections=sections)
+    expected = calculix_blade.CODE.solve(case(), omega, 20, 6)
+    np.testing.assert_allclose(expected.frequencies, actual.frequencies, rtol=3e-4)
+    assert (np.diag(mac(actual.shapes, expected.shapes, weights(case()))) > 0.999).all()
 
 
 @pytest.mark.slow

@@ -117,11 +117,11 @@ def test_shapes_are_orthogonal_in_mass(blade: Blade) -> None:
 
 @pytest.mark.parametrize("code", CODES, ids=ids)
 def test_a_code_follows_the_rules(code) -> None:
-    first, again = (code.solve(park(), 10.0, 12, 7) for _ in range(2))
+    first, second = (code.solve(park(), 10.0, 12, 7) for _ in range(2))
     assert len(first.frequencies) == 7
     assert (np.diff(first.frequencies) >= 0).all()
-    np.testing.assert_array_equal(first.frequencies, again.frequencies)
-    np.testing.assert_array_equal(first.shapes, again.shapes)
+    np.testing.assert_array_equal(first.frequencies, second.frequencies)
+    np.testing.assert_array_equal(first.shapes, second.shapes)
     assert code.version().startswith("southwell ")
     assert code.hint == ""
     assert code.order == 0

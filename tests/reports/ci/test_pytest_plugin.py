@@ -64,15 +64,15 @@ def test_effects_that_it_lacks_are_expected_failures_not_passes(project: pytest.
 def test_the_mistaken_solver_fails_wherever_it_turns_and_its_fault_is_named(project: pytest.Pytester) -> None:
     done = project.runpytest("test_mistaken.py", "--southwell-cases", "park-cantilever", "-rA")
     done.assert_outcomes(failed=36, passed=6)
-    shown = done.stdout.str()
-    assert set(re.findall(r"PASSED .*-(\d+)rad_s", shown)) == {"0"}  # at rest there is no mistake to see
-    misses = re.findall(r"^park-cantilever at (\d+) rad/s, mode (\d) .*$", shown, re.MULTILINE)
-    named = re.findall(r"^park-cantilever at (\d+) rad/s, .*no geometric stiffness", shown, re.MULTILINE)
+    output = done.stdout.str()
+    assert set(re.findall(r"PASSED .*-(\d+)rad_s", output)) == {"0"}  # at rest there is no mistake to see
+    misses = re.findall(r"^park-cantilever at (\d+) rad/s, mode (\d) .*$", output, re.MULTILINE)
+    named = re.findall(r"^park-cantilever at (\d+) rad/s, .*no geometric stiffness", output, re.MULTILINE)
     assert len(set(misses)) == 36
     assert sorted(named) == ["10"] * 6 + ["5"] * 6  # faster, core has no steady modes with that mistake to compare with
     # the beam without that stiffness at 10 rad/s: 3.353 edgewise (with rotary inertia), 10.549 flapwise, as at rest
-    assert re.search(r"at 10 rad/s, mode 1 \(edgewise\): mistaken: 3.3\d+ rad/s, not 11.71", shown)
-    assert re.search(r"at 10 rad/s, mode 2 \(flapwise\): mistaken: 10.549\d+ rad/s, not 15.40", shown)
+    assert re.search(r"at 10 rad/s, mode 1 \(edgewise\): mistaken: 3.3\d+ rad/s, not 11.71", output)
+    assert re.search(r"at 10 rad/s, mode 2 \(flapwise\): mistaken: 10.549\d+ rad/s, not 15.40", output)
 
 
 @pytest.mark.slow
@@ -208,9 +208,9 @@ def test_a_mark_that_cannot_be_used_is_one_line(pytester: pytest.Pytester, mark:
     pytester.makepyfile(f"import pytest\n{mark}\ndef test_it(southwell_cell):\n    southwell_cell.check()\n")
     done = pytester.runpytest("--strict-markers")
     assert done.ret != 0
-    shown = done.stdout.str() + done.stderr.str()
-    assert phrase in shown
-    assert "Traceback" not in shown
+    output = done.stdout.str() + done.stderr.str()
+    assert phrase in output
+    assert "Traceback" not in output
 
 
 def test_a_case_that_is_not_known_on_the_command_line(project: pytest.Pytester) -> None:
@@ -243,12 +243,12 @@ def test_installed_in_a_clean_environment(tmp_path: Path) -> None:
 
     def tests(*arguments: str) -> tuple[int, str]:
         command = [bin_ / "python", "-m", "pytest", "-q", "--southwell-cases", "wright-flapwise", *arguments]
-        done = subprocess.run(command, cwd=example, capture_output=True, text=True, env=environment)
-        return done.returncode, done.stdout
+        process = subprocess.run(command, cwd=example, capture_output=True, text=True, env=environment)
+        return process.returncode, process.stdout
 
-    status, shown = tests("--southwell-report", "out")
-    assert (status, "21 passed" in shown) == (0, True), shown
+    status, output = tests("--southwell-report", "out")
+    assert (status, "21 passed" in output) == (0, True), output
     assert (example / "out" / "report.md").exists()
-    status, shown = tests("test_mistaken.py")
-    assert (status, "18 failed, 3 passed" in shown) == (1, True), shown
-    assert "agrees with Southwell's own solver with this fault: no geometric stiffness" in shown
+    status, output = tests("test_mistaken.py")
+    assert (status, "18 failed, 3 passed" in output) == (1, True), output
+    assert "agrees with Southwell's own solver with this fault: no geometric stiffness" in output

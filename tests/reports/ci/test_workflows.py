@@ -126,7 +126,7 @@ def test_the_action_keeps_the_store_of_answers_where_southwell_writes_it(monkeyp
 def action(tmp_path: Path, **inputs: str) -> tuple[int, str]:
     """Run the action's scripts that call southwell, as they stand, in their order; status, and what they printed."""
     given = {name: entry["default"] for name, entry in load(ACTION)["inputs"].items()} | inputs
-    shown = ""
+    output = ""
     for step in steps(ACTION):
         if "southwell" in step.get("run", ""):
             variables = {
@@ -135,11 +135,11 @@ def action(tmp_path: Path, **inputs: str) -> tuple[int, str]:
             here = {**os.environ, "GITHUB_STEP_SUMMARY": str(tmp_path / "summary.md"), **variables}
             here["PATH"] = os.pathsep.join([str(Path(sys.executable).parent), here["PATH"]])
             command = ["bash", "--noprofile", "--norc", "-eo", "pipefail", "-c", step["run"]]
-            done = subprocess.run(command, cwd=tmp_path, env=here, capture_output=True, text=True)
-            shown += done.stdout + done.stderr
-            if done.returncode:
-                return done.returncode, shown
-    return 0, shown
+            process = subprocess.run(command, cwd=tmp_path, env=here, capture_output=True, text=True)
+            output += process.stdout + process.stderr
+            if process.returncode:
+                return process.returncode, output
+    return 0, output
 
 
 CASE = (ROOT / "cases" / "data" / "rotating-cable.toml").read_text(encoding="utf-8")
@@ -151,8 +151,8 @@ FEW = {"cases": "mine.toml", "codes": "southwell-equation,scikit-fem", "out": "o
 def test_the_action_passes_then_fails_on_what_got_worse(tmp_path: Path) -> None:
     case = tmp_path / "mine.toml"
     case.write_text(CASE, encoding="utf-8")
-    status, shown = action(tmp_path, **FEW)
-    assert (status, "against no baseline" in shown) == (0, True), shown
+    status, output = action(tmp_path, **FEW)
+    assert (status, "against no baseline" in output) == (0, True), output
     assert "### Southwell" in (tmp_path / "summary.md").read_text(encoding="utf-8")
     assert (tmp_path / "out" / "junit.xml").exists()
 
@@ -161,15 +161,15 @@ def test_the_action_passes_then_fails_on_what_got_worse(tmp_path: Path) -> None:
     assert action(tmp_path, **FEW, strict="true")[0] == 0  # nothing moves by itself
 
     case.write_text(re.sub(r"\[compare\]", "[compare]\ntarget = 1e-12", CASE), encoding="utf-8")
-    status, shown = action(tmp_path, **FEW)
+    status, output = action(tmp_path, **FEW)
     assert status == 1
-    assert "::error file=mine.toml,title=rotating-cable::" in shown
-    assert "against first" in shown
+    assert "::error file=mine.toml,title=rotating-cable::" in output
+    assert "against first" in output
 
 
 def git(folder: Path, *arguments: str) -> str:
-    done = subprocess.run(["git", *arguments], cwd=folder, check=True, capture_output=True, text=True)
-    return done.stdout
+    process = subprocess.run(["git", *arguments], cwd=folder, check=True, capture_output=True, text=True)
+    return process.stdout
 
 
 @pytest.mark.slow
@@ -191,19 +191,19 @@ def test_the_action_checks_the_conformance_of_own_codes(
     command.write_text('#!/bin/sh\necho "$@" >> called\ntest "$2" != other.mod:SOLVER\n')
     command.chmod(0o755)
     path = os.pathsep.join([str(tmp_path), os.environ["PATH"]])
-    done = subprocess.run(
+    process = subprocess.run(
         ["bash", "-eo", "pipefail", "-c", step["run"]],
         cwd=tmp_path,
         env=os.environ | {"PATH": path, "CODES": codes, "CONFORM": conform},
     )
     called = tmp_path / "called"
     assert (called.read_text().splitlines() if called.exists() else []) == checked
-    assert done.returncode == (1 if len(checked) == 2 else 0)
+    assert process.returncode == (1 if len(checked) == 2 else 0)
 
 
 def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     """The two steps that read and write it, as they stand, against a repository beside."""
-    named = {s.get("name"): s["run"] for s in steps(ROOT / ".github" / "workflows" / "matrix.yml") if "run" in s}
+    by_name = {s.get("name"): s["run"] for s in steps(ROOT / ".github" / "workflows" / "matrix.yml") if "run" in s}
     origin = tmp_path / "origin"
     git(tmp_path, "init", "--quiet", "--bare", "--initial-branch=main", str(origin))
     first = tmp_path / "first"
@@ -215,10 +215,10 @@ def test_the_history_s_branch_is_made_and_added_to(tmp_path: Path) -> None:
     here = {**os.environ, "PATH": os.pathsep.join([str(Path(sys.executable).parent), os.environ["PATH"]])}
 
     def step(folder: Path, name: str, **variables: str) -> str:
-        command = ["bash", "-eo", "pipefail", "-c", named[name]]
-        done = subprocess.run(command, cwd=folder, env=here | variables, capture_output=True, text=True)
-        assert done.returncode == 0, done.stderr
-        return done.stdout
+        command = ["bash", "-eo", "pipefail", "-c", by_name[name]]
+        process = subprocess.run(command, cwd=folder, env=here | variables, capture_output=True, text=True)
+        assert process.returncode == 0, process.stderr
+        return process.stdout
 
     for k, commit in enumerate(("aaa", "bbb"), 1):
         job = tmp_path / f"job{k}"
@@ -242,8 +242,8 @@ def test_only_misses_are_left_to_the_gate(name: str, status: int, expected: int,
     """The line that runs ``verify`` goes on after statuses 0 and 1, and ends the script with any other."""
     (line,) = re.findall(r"^ *(southwell verify .*)$", scripts()[name], re.MULTILINE)
     script = f"southwell() {{ return {status}; }}\nCASES= out=. cases=() options=()\n{line}\necho went on"
-    done = subprocess.run(["bash", "-eo", "pipefail", "-c", script], cwd=tmp_path, capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (expected, "" if expected else "went on\n")
+    process = subprocess.run(["bash", "-eo", "pipefail", "-c", script], cwd=tmp_path, capture_output=True, text=True)
+    assert (process.returncode, process.stdout) == (expected, "" if expected else "went on\n")
 
 
 def test_the_exit_statuses_are_documented_and_told_by_help() -> None:

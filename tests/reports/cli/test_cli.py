@@ -35,11 +35,11 @@ def beam(tmp_path: Path) -> Path:
 
 def southwell(arguments: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, str]:
     """Status, standard output and standard error."""
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(shlex.split(arguments))
     out, err = capsys.readouterr()
-    assert isinstance(ended.value.code, int)
-    return ended.value.code, out, err
+    assert isinstance(exit_info.value.code, int)
+    return exit_info.value.code, out, err
 
 
 @pytest.mark.parametrize(
@@ -177,7 +177,7 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
 ) -> None:
     out = tmp_path / "out"
     codes = "exact-beam,yoo-shin,southwell.tests.support.misbehaving:ABSENT"
-    status, shown, _ = southwell(f"verify {beam} --codes {codes} --faults none --out {out} --workers 1", capsys)
+    status, output, _ = southwell(f"verify {beam} --codes {codes} --faults none --out {out} --workers 1", capsys)
     assert status == 0
     run = results_file.read(out / "results.jsonl")
     absent = [c for c in run.cells if c.verdict == "not run"]
@@ -187,8 +187,8 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
         (code, omega, mode) for code in ("exact-beam", "yoo-shin") for omega in (0.0, 10.0) for mode in (1, 2)
     }
     assert all(c.verdict == "pass" for c in run.cells if c not in absent)
-    said = f"{len(run.cells)} cells: {len(run.cells) - 2} ✔ pass, 2 ○ not run."
-    assert shown.splitlines()[0] == f"Yes: nothing contradicts Southwell's own solver. {said}"
+    message = f"{len(run.cells)} cells: {len(run.cells) - 2} ✔ pass, 2 ○ not run."
+    assert output.splitlines()[0] == f"Yes: nothing contradicts Southwell's own solver. {message}"
     report = (out / "report.md").read_text()
     assert f"southwell verify {beam} --codes {codes}" in report
     assert "not installed: pip install manners" in report
@@ -198,8 +198,8 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
     for path in written:
         if path.suffix != ".jsonl":
             path.unlink()
-    status, again, _ = southwell(f"report {out}", capsys)
-    assert (status, again) == (0, shown)
+    status, repeated, _ = southwell(f"report {out}", capsys)
+    assert (status, repeated) == (0, output)
     assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == written
 
 
@@ -207,12 +207,12 @@ def test_a_verification_writes_results_report_and_figures_and_can_be_shown_again
 def test_a_code_that_is_wrong_ends_with_status_1(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    status, shown, _ = southwell(
+    status, output, _ = southwell(
         f"verify {beam} --codes southwell.tests.support.misbehaving:WELL_BEHAVED --faults none --out {tmp_path / 'out'}",
         capsys,
     )
     assert status == 1
-    assert "4 ✘ fail" in shown.splitlines()[0]
+    assert "4 ✘ fail" in output.splitlines()[0]
 
 
 def started(beam: Path, mark: Path) -> tuple[subprocess.Popen[str], Path]:
@@ -292,9 +292,9 @@ def test_killed_it_leaves_no_process_and_its_results_can_be_shown(
     assert child.returncode == -how
     assert killing.running(tmp_path) == []
     for command in ("report", "gate"):
-        status, shown, _ = southwell(f"{command} {results_file.parent}", capsys)
+        status, output, _ = southwell(f"{command} {results_file.parent}", capsys)
         assert status == 3
-        assert shown.startswith("Incomplete: cells of stub/")
+        assert output.startswith("Incomplete: cells of stub/")
 
 
 def test_interrupted_before_anything_is_finished_there_is_no_report(
@@ -311,18 +311,18 @@ def test_interrupted_before_anything_is_finished_there_is_no_report(
 
 
 def test_cases_and_codes_are_listed(capsys: pytest.CaptureFixture[str]) -> None:
-    _, shown, _ = southwell("cases", capsys)
-    assert all(name in shown for name in library.names())
-    _, shown, _ = southwell("codes", capsys)
-    assert all(name in shown for name in names())
+    _, output, _ = southwell("cases", capsys)
+    assert all(name in output for name in library.names())
+    _, output, _ = southwell("codes", capsys)
+    assert all(name in output for name in names())
 
 
 def test_every_command_says_on_the_first_page_what_it_is_for(capsys: pytest.CaptureFixture[str]) -> None:
     command = [sys.executable, "-m", "southwell", "--help"]  # a process of its own: nothing is loaded yet
-    shown = subprocess.run(
+    output = subprocess.run(
         command, capture_output=True, text=True, check=True, env={**os.environ, "COLUMNS": "160"}
     ).stdout
-    lines = {words[0]: words[1:] for line in shown.splitlines() if (words := line.strip("│ ").split())}
+    lines = {words[0]: words[1:] for line in output.splitlines() if (words := line.strip("│ ").split())}
     names = [name for name in cli.app if not name.startswith("-")]
     assert len(names) > 15
     assert all(len(lines[name]) > 3 for name in names)
@@ -347,9 +347,9 @@ def test_version_is_that_of_the_package(capsys: pytest.CaptureFixture[str]) -> N
 @pytest.mark.slow
 def test_a_reader_that_has_seen_enough_of_a_pipe_is_no_error() -> None:
     command = f"{shlex.quote(sys.executable)} -m southwell modes park-cantilever --json | head -n 1"
-    done = subprocess.run(["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True)
-    assert (done.returncode, done.stdout) == (0, "[\n")
-    assert done.stderr == ""
+    process = subprocess.run(["bash", "-c", f"set -o pipefail; {command}"], capture_output=True, text=True)
+    assert (process.returncode, process.stdout) == (0, "[\n")
+    assert process.stderr == ""
 
 
 @pytest.mark.parametrize(

@@ -12,9 +12,9 @@ from southwell.tests.support import fuzz
 
 
 def southwell(*arguments: str) -> int:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(arguments)
-    return int(ended.value.code or 0)
+    return int(exit_info.value.code or 0)
 
 
 @pytest.fixture
@@ -83,9 +83,9 @@ def test_a_title_is_no_command(folder: Path, capsys: pytest.CaptureFixture[str])
     path = folder / "case.toml"
     path.write_text(path.read_text().replace("A tapered blade", "::error::A blade [/] [bold]"))
     assert southwell("show", str(path)) == 0
-    shown = capsys.readouterr().out
-    assert "error::A blade [/] [bold]" in shown
-    assert not [line for line in shown.splitlines() if line.lstrip().startswith("::")]
+    output = capsys.readouterr().out
+    assert "error::A blade [/] [bold]" in output
+    assert not [line for line in output.splitlines() if line.lstrip().startswith("::")]
 
 
 def test_annotations_are_commands_still(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -16,9 +16,9 @@ DATA = Path(__file__).parents[2] / "data" / "blades"
 
 
 def test_openfasts_pitch_has_the_other_sign() -> None:
-    ours, theirs = Mounting(pitch=-10.0), Mounting(pitch=10.0, pitch_convention="openfast")
-    assert ours.mount() == theirs.mount()
-    assert theirs.mount().pitch == pytest.approx(np.radians(-10.0))
+    actual, expected = Mounting(pitch=-10.0), Mounting(pitch=10.0, pitch_convention="openfast")
+    assert actual.mount() == expected.mount()
+    assert expected.mount().pitch == pytest.approx(np.radians(-10.0))
     assert Mounting(pitch=0.0, pitch_convention="openfast").mount() == Mounting(pitch=0.0).mount()
 
 
@@ -44,8 +44,8 @@ def test_a_convention_without_a_pitch_is_refused(capsys: pytest.CaptureFixture[s
 
 def test_show_says_both_signs(capsys: pytest.CaptureFixture[str]) -> None:
     line = f"show {DATA / 'elastodyn_main.dat'} --pitch 10 --pitch-convention openfast"
-    _, shown, _ = southwell(line, capsys)
-    assert "-10° (positive with the leading edge downwind; as OpenFAST's BlPitch: 10°)" in shown
+    _, output, _ = southwell(line, capsys)
+    assert "-10° (positive with the leading edge downwind; as OpenFAST's BlPitch: 10°)" in output
 
 
 @pytest.mark.parametrize("file", ["elastodyn_main.dat", "elastodyn_blade.dat", "fast7_main.fst"])

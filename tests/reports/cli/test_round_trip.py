@@ -51,8 +51,8 @@ def test_what_is_written_has_the_same_frequencies(
     status, _, err = southwell(f"convert {source} {out} --to {to} {ON_HUB}{length}", capsys)
     assert (status, err) == (0, "")
     given = Mount(**OPTIONS, length=50.0 if length else None)
-    again = readers.read(out) if to == "toml" else readers.read(out, given)
-    np.testing.assert_allclose(frequencies(again), frequencies(readers.read(source, given)), rtol=1e-6)
+    second = readers.read(out) if to == "toml" else readers.read(out, given)
+    np.testing.assert_allclose(frequencies(second), frequencies(readers.read(source, given)), rtol=1e-6)
 
 
 @pytest.mark.slow
@@ -73,8 +73,8 @@ def test_public_decks(tmp_path: Path, capsys: pytest.CaptureFixture[str], name: 
     status, _, err = southwell(f"convert {source} {out} --to {to} --hub-radius 2{length}", capsys)
     assert (status, err) == (0, "")
     mount = Mount(hub_radius=2.0, length=63.0 if length else None)
-    again = readers.read(out, Mount(hub_radius=2.0, length=63.0) if to == "elastodyn" else Mount(hub_radius=2.0))
-    np.testing.assert_allclose(frequencies(again), frequencies(readers.read(source, mount)), rtol=1e-6)
+    second = readers.read(out, Mount(hub_radius=2.0, length=63.0) if to == "elastodyn" else Mount(hub_radius=2.0))
+    np.testing.assert_allclose(frequencies(second), frequencies(readers.read(source, mount)), rtol=1e-6)
 
 
 @pytest.fixture
@@ -82,18 +82,18 @@ def elastodyn(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> tuple[Path,
     """A table without its main file, the same written again, and what was said."""
     source, out = tmp_path / "alone.dat", tmp_path / "out.dat"
     source.write_bytes((DATA / "elastodyn_blade.dat").read_bytes())
-    status, shown, _ = southwell(f"convert {source} {out} --to elastodyn --length 50 --hub-radius 2 --rpm 12", capsys)
+    status, output, _ = southwell(f"convert {source} {out} --to elastodyn --length 50 --hub-radius 2 --rpm 12", capsys)
     assert status == 0
-    return source, out, shown
+    return source, out, output
 
 
 def test_elastodyns_damping_and_pitch_axis_are_carried_over(elastodyn: tuple[Path, Path, str]) -> None:
-    source, out, shown = elastodyn
+    source, out, output = elastodyn
     mount = Mount(length=50.0, hub_radius=2.0)
     before, after = ({u.name: u.values for u in readers.reading(p, mount).source.unused} for p in (source, out))
     for name in ("BldFlDmp(1), BldFlDmp(2), BldEdDmp(1)", "PitchAxis"):
         assert after[name] == before[name]
-        assert name not in shown
+        assert name not in output
     assert before["PitchAxis"] == (0.25, 0.3, 0.375, 0.375, 0.375)
 
 
@@ -110,9 +110,9 @@ def test_elastodyns_mode_shapes_are_those_of_the_blade(elastodyn: tuple[Path, Pa
 
 def test_beamdyns_damping_is_carried_over(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "out.dat"
-    status, shown, _ = southwell(f"convert {DATA / 'beamdyn_main.dat'} {out} --to beamdyn", capsys)
+    status, output, _ = southwell(f"convert {DATA / 'beamdyn_main.dat'} {out} --to beamdyn", capsys)
     assert status == 0
-    assert "mu1" not in shown
+    assert "mu1" not in output
     (mu,) = readers.reading(out).source.unused
     assert mu.values == (1e-3, 1e-3, 1e-3, 0.0014, 0.0022, 0.0022)
 
@@ -122,9 +122,9 @@ def test_a_curve_between_stations_that_beamdyn_does_not_hold_is_told(
 ) -> None:
     """The stations of an Akima curve lie elsewhere on BeamDyn's natural spline; the message says by how much."""
     out = tmp_path / "out.dat"
-    status, shown, _ = southwell(f"convert {DATA / 'hawc2.htc'} {out} --to beamdyn", capsys)
+    status, output, _ = southwell(f"convert {DATA / 'hawc2.htc'} {out} --to beamdyn", capsys)
     assert status == 0
-    (phrase,) = re.findall(r"the curve between stations changes: BeamDyn's spline moves stations by (\S+) of", shown)
+    (phrase,) = re.findall(r"the curve between stations changes: BeamDyn's spline moves stations by (\S+) of", output)
     before, after = readers.read(DATA / "hawc2.htc"), readers.read(out)
     assert len(after.stations) == len(before.stations)
     np.testing.assert_allclose(after.curve, before.curve, rtol=1e-14, atol=1e-14)
@@ -135,8 +135,8 @@ def test_a_curve_between_stations_that_beamdyn_does_not_hold_is_told(
 
 
 def test_what_a_format_does_not_keep_is_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    status, shown, _ = southwell(f"convert {DATA / 'beamdyn_main.dat'} {tmp_path / 'out.toml'} --hub-radius 0", capsys)
+    status, output, _ = southwell(f"convert {DATA / 'beamdyn_main.dat'} {tmp_path / 'out.toml'} --hub-radius 0", capsys)
     assert status == 0
-    assert "not used: mu1 … mu6 (largest 0.0022 s, beamdyn_blade.dat)" in shown
-    status, shown, _ = southwell(f"convert {DATA / 'hawc2.htc'} {tmp_path / 'out.dat'} --to beamdyn", capsys)
-    assert "not given or zero, written as 0: mu1 … mu6" in shown
+    assert "not used: mu1 … mu6 (largest 0.0022 s, beamdyn_blade.dat)" in output
+    status, output, _ = southwell(f"convert {DATA / 'hawc2.htc'} {tmp_path / 'out.dat'} --to beamdyn", capsys)
+    assert "not given or zero, written as 0: mu1 … mu6" in output

@@ -49,10 +49,10 @@ def test_a_commands_line_in_the_list_is_the_first_of_its_own_help(name: str, lin
 
 
 def test_every_command_is_listed_in_eighty_columns(capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["--help"])
     out = capsys.readouterr().out
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     assert max(map(len, out.splitlines())) <= 80
     assert all(f"│ {name} " in out for commands in cli.COMMANDS.values() for name, *_ in commands)
 

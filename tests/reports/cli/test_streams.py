@@ -39,14 +39,14 @@ def test_a_run_without_home_or_temporary_folder_in_an_unusual_path(tmp_path: Pat
     folder = tmp_path / "a b\nü'$x"
     folder.mkdir()
     line = "env -u HOME southwell verify rotating-cable --codes southwell-equation --faults none --workers 1 --out ."
-    done = subprocess.run(
+    process = subprocess.run(
         ["bash", "-c", line.replace("southwell verify", f"'{sys.executable}' -m southwell verify")],
         cwd=folder,
         env={**os.environ, "TMPDIR": str(tmp_path / "missing")},
         capture_output=True,
         text=True,
     )
-    assert (done.returncode, (folder / "results.jsonl").exists()) == (0, True), done.stderr
+    assert (process.returncode, (folder / "results.jsonl").exists()) == (0, True), process.stderr
 
 
 @pytest.mark.slow
@@ -63,8 +63,8 @@ def test_a_defect_of_the_program_has_a_status_of_its_own(
         raise ZeroDivisionError("division by zero")
 
     monkeypatch.setattr(report, "run_in", fails)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["report", str(tmp_path)])
-    assert ended.value.code == 70
+    assert exit_info.value.code == 70
     last = capsys.readouterr().err.splitlines()[-1]
     assert last.startswith("southwell: internal error: ZeroDivisionError: division by zero: please report it")

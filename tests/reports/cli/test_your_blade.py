@@ -144,11 +144,11 @@ def test_frequencies_are_whole_in_eighty_columns(count: int) -> None:
     title = "a blade: 257 stations, accuracy 1e-06"
     for table in terminal.frequencies(modes, title, RPM, 80):
         console.print(table)
-    shown = console.file.getvalue()  # type: ignore[attr-defined]
-    assert title in shown, "a title wider than its table is not wrapped"
-    assert "…" not in shown
-    assert max(map(len, shown.splitlines())) <= 80
-    printed = [float(x) for line in shown.splitlines() if line.startswith("  edge") for x in line.split()[2:-1]]
+    output = console.file.getvalue()  # type: ignore[attr-defined]
+    assert title in output, "a title wider than its table is not wrapped"
+    assert "…" not in output
+    assert max(map(len, output.splitlines())) <= 80
+    printed = [float(x) for line in output.splitlines() if line.startswith("  edge") for x in line.split()[2:-1]]
     assert sorted(printed) == pytest.approx(sorted(r.frequency * RPM.frequencies for r in rows))
 
 
@@ -158,11 +158,11 @@ def test_a_table_is_continued_with_every_column_that_names_a_row() -> None:
     rows = tuple(("a-long-name", f"{30 * k} rpm", "1", "flapwise 1", "8", *["1.234567"] * 4) for k in range(3))
     console = Console(width=60, file=StringIO(), highlight=False)
     console.print(tables.terminal(tables.Sheet("Frequencies over the samples", head, rows, keys=4), 60))
-    shown = console.file.getvalue()  # type: ignore[attr-defined]
-    assert [shown.count(f" {30 * k} rpm") for k in range(3)] == 3 * [shown.count("blade")]
-    assert shown.count("blade") > 1
-    assert shown.count("1.234567") == 12
-    assert max(map(len, shown.splitlines())) <= 60
+    output = console.file.getvalue()  # type: ignore[attr-defined]
+    assert [output.count(f" {30 * k} rpm") for k in range(3)] == 3 * [output.count("blade")]
+    assert output.count("blade") > 1
+    assert output.count("1.234567") == 12
+    assert max(map(len, output.splitlines())) <= 60
 
 
 @pytest.mark.parametrize("width", [64, 72, 80, 96, 120])
@@ -175,9 +175,9 @@ def test_no_column_of_words_is_cut(width: int) -> None:
     console = Console(width=width, file=StringIO(), highlight=False)
     for table in table_columns.tables(head, rows, width):
         console.print(table)
-    shown = console.file.getvalue()  # type: ignore[attr-defined]
-    assert shown.count("nothing") == 3
-    assert max(len(line.rstrip()) for line in shown.splitlines()) < width
+    output = console.file.getvalue()  # type: ignore[attr-defined]
+    assert output.count("nothing") == 3
+    assert max(len(line.rstrip()) for line in output.splitlines()) < width
 
 
 def test_a_narrow_terminal_has_no_column_of_broken_words_for_faults() -> None:
@@ -185,12 +185,12 @@ def test_a_narrow_terminal_has_no_column_of_broken_words_for_faults() -> None:
         "no hub radius", "solver", "the root is on the axis", "+3 %", "beam", 10.0, ("beam, a: fail",), 0.03
     )
     run = replace(samples.run(), controls=(control,))
-    for width, shown in ((80, False), (120, True)):
+    for width, output in ((80, False), (120, True)):
         console = Console(width=width, file=StringIO(), highlight=False)
         console.print(terminal.controls(run, width))
         text = console.file.getvalue()  # type: ignore[attr-defined]
-        assert ("detected by" in text) == shown
-        assert ("beam, a: fail" in text) == shown
+        assert ("detected by" in text) == output
+        assert ("beam, a: fail" in text) == output
         assert "largest difference" in text
         assert "no hub radius" in text
 
@@ -209,7 +209,7 @@ def test_stations_are_whole_in_eighty_columns() -> None:
     aside = replace(blade, mass=offset(blade.mass, np.full(len(blade.stations), 0.2)))
     for table in show.stations(aside, 5):
         console.print(table)
-    shown = console.file.getvalue()  # type: ignore[attr-defined]
-    assert "…" not in shown
-    assert shown.count("99.000") == 2
-    assert shown.count("2.5e+10") == 2
+    output = console.file.getvalue()  # type: ignore[attr-defined]
+    assert "…" not in output
+    assert output.count("99.000") == 2
+    assert output.count("2.5e+10") == 2

@@ -115,9 +115,9 @@ def test_verdicts_colours_are_told_apart_by_the_colour_blind_and_text_on_them_is
     light, dark = palettes()
     for palette in (light, dark):
         for sight in (np.eye(3), DEUTERANOPE, PROTANOPE):
-            seen = {k: lab(sight @ palette[k]) for k in ("pass", "known", "open", "fail", "none")}
-            for a, b in combinations(seen, 2):
-                assert np.linalg.norm(seen[a] - seen[b]) > 8, (a, b)
+            observed = {k: lab(sight @ palette[k]) for k in ("pass", "known", "open", "fail", "none")}
+            for a, b in combinations(observed, 2):
+                assert np.linalg.norm(observed[a] - observed[b]) > 8, (a, b)
         luminance = {k: float(v @ [0.2126, 0.7152, 0.0722]) for k, v in palette.items()}
         for ink, on in (
             [("ink", v) for v in ("paper", "soft", "pass", "known", "open", "fail", "none")]
@@ -198,9 +198,9 @@ def test_a_rotor_without_a_steady_state_has_no_shapes(monkeypatch: pytest.Monkey
 
     monkeypatch.setattr(shapes, "_blade", unsteady)
     cells = [c for c in run().cells if c.case == "park-cantilever" and c.omega == 30.0]
-    shown = moving("park-cantilever", [replace(c, full=None) for c in cells], RAD_S)
-    assert shown is not None
-    assert shown["speeds"] == []
+    output = moving("park-cantilever", [replace(c, full=None) for c in cells], RAD_S)
+    assert output is not None
+    assert output["speeds"] == []
 
 
 def test_steps_are_moves_beyond_rounding() -> None:
@@ -255,10 +255,10 @@ def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys:
     results_file.write(folder / "results.jsonl", replace(samples.run(), plan=()))
 
     def southwell(*words: str) -> tuple[int, str, str]:
-        with pytest.raises(SystemExit) as ended:
+        with pytest.raises(SystemExit) as exit_info:
             cli.main(["dashboard", *words])
         out, err = capsys.readouterr()
-        return int(ended.value.code or 0), out, err
+        return int(exit_info.value.code or 0), out, err
 
     status, out, err = southwell(
         str(folder), "--history", str(kept(tmp_path / "h.jsonl")), "--out", str(tmp_path / "site")

@@ -99,12 +99,12 @@ def test_a_speed_by_keyboard_and_the_filter_outlives_the_page(tab: Any, site: Pa
     tab.locator("select[name=speed]").focus()
     tab.keyboard.type("10 rad")
     tab.keyboard.press("Enter")
-    shown = tab.locator("table.matrix tbody tr").count()
+    output = tab.locator("table.matrix tbody tr").count()
     turning = {c.case for c in hostile().cells if c.omega == 10.0 and _speeds_in_rad(c.case)}
-    assert shown == len(turning) + 1  # and what codes share
+    assert output == len(turning) + 1  # and what codes share
     tab.reload()
     assert tab.locator("select[name=speed]").input_value() == "10 rad/s"
-    assert tab.locator("table.matrix tbody tr").count() == shown
+    assert tab.locator("table.matrix tbody tr").count() == output
 
 
 def _speeds_in_rad(case: str) -> bool:
@@ -123,8 +123,8 @@ def test_every_filter_by_keyboard(tab: Any, site: Path, name: str) -> None:
         tab.keyboard.press(key)
     chosen = tab.locator(f"select[name={name}]").input_value()
     assert chosen
-    shown = tab.locator("table.matrix")
-    assert not shown.count() or shown.inner_text() != before
+    output = tab.locator("table.matrix")
+    assert not output.count() or output.inner_text() != before
     assert f"{name}=" in tab.evaluate("location.hash")
 
 
@@ -132,11 +132,11 @@ def test_the_verdict_is_said_first(tab: Any, site: Path) -> None:
     tab.goto((site / "run-2" / "index.html").as_uri())
     first, worst, *_ = tab.locator("#headline p").all_inner_texts()
     assert first.startswith(f"Yes: nothing contradicts Southwell's own solver. {len(run().cells)} cells: ")
-    said = re.fullmatch(
+    message = re.fullmatch(
         r"Worst independent answer.*: ✔ (\S+ % ± \S+ %): (\S+), (\S+), (\w+ \d), (.+); target (\S+ %)\.", worst
     )
-    assert said
-    size, case, code, *_ = said.groups()
+    assert message
+    size, case, code, *_ = message.groups()
     assert any((c.case, c.code, plus_minus(c)) == (case, code, size) for c in run().cells)
     assert tab.locator("#headline").bounding_box()["y"] < 150
     tab.goto((site / "run-2" / page(case)).as_uri())
@@ -269,12 +269,12 @@ def test_the_blade_moves_and_stops(tab: Any, site: Path) -> None:
     button = tab.get_by_role("button", name="move")
     button.press("Enter")
     assert button.get_attribute("aria-pressed") == "false"
-    still = tab.evaluate(picture)
+    at_rest = tab.evaluate(picture)
     tab.wait_for_timeout(150)
-    assert tab.evaluate(picture) == still
+    assert tab.evaluate(picture) == at_rest
     assert tab.locator("select[name=shape] option").count() == 6
     tab.select_option("select[name=shape]", "3")
-    assert tab.evaluate(picture) != still
+    assert tab.evaluate(picture) != at_rest
     tab.select_option("select[name=shape-speed]", label="at rest")
     assert "10.549 rad/s" in tab.locator("select[name=shape] option").first.inner_text()
 

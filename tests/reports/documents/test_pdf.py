@@ -53,8 +53,8 @@ def test_every_markup_of_markdown_has_a_layout(tmp_path: Path) -> None:
     reader = rendered(text, tmp_path)
     assert missing(text, reader) == []
     printed = words(reader)
-    for said in ("indentedcode", "fenced`code`$x", "More<b>", "1.one", "3.loose", "notshown"):
-        assert said in printed
+    for message in ("indentedcode", "fenced`code`$x", "More<b>", "1.one", "3.loose", "notshown"):
+        assert message in printed
     assert {a["/A"]["/URI"] for a in annotations(reader)} == {"https://example.org/a?b=c", "https://example.org"}
 
 

@@ -57,8 +57,8 @@ def test_help_shows_the_parameters_that_a_user_types() -> None:
     text = pydoc.plain(pydoc.render_doc(southwell.modes)).replace("'", "")
     assert "modes(blade: Blade, omega: float | None = None, *, rpm" in text
     for one, many in ((solve.modes, solve.sweep), (solve.mesh_modes, solve.mesh_sweep)):
-        shown = list(inspect.signature(one).parameters)
-        assert shown == ["blade", "omega", *list(inspect.signature(many).parameters)[2:]]
+        output = list(inspect.signature(one).parameters)
+        assert output == ["blade", "omega", *list(inspect.signature(many).parameters)[2:]]
         assert f"arguments and errors as for ``{many.__name__}``" in pydoc.render_doc(one)
 
 
@@ -174,8 +174,8 @@ def test_a_verification_has_faults_limits_and_a_folder(blade: southwell.Blade, t
 
     The seeded fault needs a code that agrees on the blade without it, and no code had time to.
     """
-    asked = {"omega": OMEGA, "codes": ["exact-beam"], "modes": 1, "faults": "no hub radius", "out": tmp_path}
-    result = southwell.verify(blade, **asked, time_limit=1e-3)
+    request = {"omega": OMEGA, "codes": ["exact-beam"], "modes": 1, "faults": "no hub radius", "out": tmp_path}
+    result = southwell.verify(blade, **request, time_limit=1e-3)
     timed_out = [c for c in result.run.cells if c.code == "exact-beam"]
     assert {(c.verdict, c.value) for c in timed_out} == {("inconclusive", None)}
     assert [(c.control, c.detected_by) for c in result.run.controls] == [("no hub radius", ())]

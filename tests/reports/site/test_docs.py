@@ -59,15 +59,15 @@ def leaves(part: object) -> list[str]:
 
 def test_files_named_on_a_page_exist() -> None:
     pages = [*DOCS.glob("*.md"), ROOT / "README.md", ROOT / "CONTRIBUTING.md"]
-    named = {
+    by_name = {
         (page.name, name)
         for page in pages
         for name in re.findall(
             r"`((?:core|references|cases|reports|tests)/[\w/]+\.\w+)`", page.read_text(encoding="utf-8")
         )
     }
-    assert len({page for page, _ in named}) > 5
-    assert sorted((page, name) for page, name in named if not (ROOT / name).is_file()) == []
+    assert len({page for page, _ in by_name}) > 5
+    assert sorted((page, name) for page, name in by_name if not (ROOT / name).is_file()) == []
 
 
 def test_every_page_is_in_the_nav_and_every_name_in_the_nav_is_a_page() -> None:
@@ -199,8 +199,8 @@ def test_a_cell_shows_its_last_value_and_what_it_prints(tmp_path: Path) -> None:
     cells += [{"cell_type": "code", "source": [source]} for source in sources]
     path = tmp_path / "small.ipynb"
     path.write_text(json.dumps({"cells": cells}), encoding="utf-8")
-    shown = re.findall(r"```text\n(.*?)\n```", notebook.page(path)["small.md"], re.S)
-    assert shown == ["printed", "2", "True"]
+    output = re.findall(r"```text\n(.*?)\n```", notebook.page(path)["small.md"], re.S)
+    assert output == ["printed", "2", "True"]
 
 
 # ------------------------------------------------------------------------------------------------------------ the site

@@ -57,11 +57,11 @@ def test_the_table_has_five_rows_whose_numbers_are_those_of_codes_that_pass_thro
 def test_the_output_of_the_command_is_what_it_prints(tmp_path: Path) -> None:
     """As southwell is run here; the figure is the one it draws. Uncertainties below 1e-8 are rounding: processors differ."""
     output = readme.example(tmp_path)
-    again, before = (
+    second, before = (
         re.sub(r"\b\de-(09|1\d)\b", "tiny ", text)
         for text in (readme.put(TEXT, readme.console(output), "command"), TEXT)
     )
-    assert again == before, "run `make readme`"
+    assert second == before, "run `make readme`"
     assert (tmp_path / readme.FIGURE.name).is_file()
     assert readme.FIGURE.relative_to(readme.ROOT).as_posix() in TEXT
     assert readme.FIGURE.is_file()
@@ -89,9 +89,9 @@ def test_the_rows_are_of_all_cases_and_codes_there_are(monkeypatch: pytest.Monke
     all_, _ = library.load_all()
     monkeypatch.delenv("SOUTHWELL_BLADES", raising=False)
     _, absent = library.load_all()
-    ours = {v.name for name, case in all_.items() if name not in absent for v in case.variants}
-    theirs = {v.name for name, case in all_.items() if name in absent for v in case.variants} | set(absent)
-    assert ours <= set(summary.cases(run)) <= ours | theirs | {*library.mechanisms(), *library.turbines()}
+    actual = {v.name for name, case in all_.items() if name not in absent for v in case.variants}
+    expected = {v.name for name, case in all_.items() if name in absent for v in case.variants} | set(absent)
+    assert actual <= set(summary.cases(run)) <= actual | expected | {*library.mechanisms(), *library.turbines()}
     anywhere = set(BLADE_CODES) - set(readme.ISOLATED)
     assert {registry.code(name).name for name in anywhere} <= {c.code for c in run.cells}
 

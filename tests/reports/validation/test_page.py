@@ -57,8 +57,8 @@ def of_beam(name: str) -> Iterator[Point]:
 
 
 def test_more_input_uncertainty_shows_no_more_of_the_models_error() -> None:
-    for sure, vague in zip(points(model(0.0)), points(model(0.1)), strict=True):
-        assert vague.validation.visible <= sure.validation.visible
+    for uncertainty, vague in zip(points(model(0.0)), points(model(0.1)), strict=True):
+        assert vague.validation.visible <= uncertainty.validation.visible
 
 
 def test_a_mode_that_changes_its_character_is_still_the_same_mode() -> None:

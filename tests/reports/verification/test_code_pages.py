@@ -70,9 +70,9 @@ def test_the_largest_difference_of_each_blade_is_the_runs() -> None:
 
 def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
     cells = (cell("scikit-fem", "first", 0.3, "known difference"), cell("scikit-fem", "first", 0.002, "fail"))
-    _, _, (_, counted, shown, *_) = rows(code_pages.differences(Run(cells), cells))
+    _, _, (_, counted, output, *_) = rows(code_pages.differences(Run(cells), cells))
     assert counted == "1 ✘, 1 ≈"
-    assert shown.startswith("✘ +0.200 %")
+    assert output.startswith("✘ +0.200 %")
 
 
 def test_a_page_says_version_and_refusals() -> None:
@@ -97,9 +97,9 @@ def test_a_code_without_cells_says_so() -> None:
 
 def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     results_file.write(tmp_path / arguments.RESULTS, RUN)
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["codes", "--pages", str(tmp_path)])
-    assert ended.value.code == 0
+    assert exit_info.value.code == 0
     index = tmp_path / "codes" / "index.md"
     assert capsys.readouterr().out.strip() == str(index)
     text = index.read_text(encoding="utf-8")
@@ -114,7 +114,7 @@ def test_every_code_has_a_page_and_the_index_leads_to_it(tmp_path: Path, capsys:
 
 
 def test_a_folder_without_results_is_bad_input(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["codes", "--pages", str(tmp_path)])
-    assert ended.value.code == 2
+    assert exit_info.value.code == 2
     assert "No such file" in capsys.readouterr().err

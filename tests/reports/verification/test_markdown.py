@@ -159,12 +159,12 @@ def test_a_failure_without_a_number_is_told_first_too() -> None:
 
 def test_a_pass_that_discretisation_does_not_explain_is_stated() -> None:
     """A rotor speed wrong by 0.043 % passes within 0.1 %; ± is 55 times smaller."""
-    right = samples.cell(code="right", difference=9e-5, uncertainty=1e-6)
+    correct = samples.cell(code="right", difference=9e-5, uncertainty=1e-6)
     rough = samples.cell(code="rough", difference=6e-4, uncertainty=3e-4)
-    wrong = samples.cell(code="wrong", difference=3.87e-4, uncertainty=7e-6)
-    less = replace(wrong, difference=2e-4)
-    assert not evidence.beyond_uncertainty(Run((right, rough, replace(wrong, role="table"))))
-    (line,) = [s for s in matrix_report.headline(Run((right, rough, wrong, less))) if "explains" in s]
+    altered = samples.cell(code="wrong", difference=3.87e-4, uncertainty=7e-6)
+    less = replace(altered, difference=2e-4)
+    assert not evidence.beyond_uncertainty(Run((correct, rough, replace(altered, role="table"))))
+    (line,) = [s for s in matrix_report.headline(Run((correct, rough, altered, less))) if "explains" in s]
     assert "+0.0387 % ± 0.0007 % (beam, wrong, " in line
     assert line.count("±") == 1
 
@@ -236,8 +236,8 @@ def test_differences_at_a_speed_are_those_of_the_cells(report: str) -> None:
     run = samples.run()
     for cell in run.cells:
         if cell.case == "beam" and cell.omega == 30.0 and cell.mode:
-            shown = by_name[cell.name][table[0].index(cell.code)]
-            assert shown == f"{summary.SYMBOL[cell.verdict]} {summary.plus_minus(cell)}"
+            output = by_name[cell.name][table[0].index(cell.code)]
+            assert output == f"{summary.SYMBOL[cell.verdict]} {summary.plus_minus(cell)}"
             assert float(by_name[cell.name][1]) == pytest.approx(cell.full, rel=1e-6)
 
 

@@ -129,6 +129,6 @@ def test_points_lie_over_the_lines_and_bend_none_of_them() -> None:
     assert figures.core_lines([c for c in with_data.cells if c.role != "measured"]) == figures.core_lines(run.cells)
     labels = [text.get_text() for text in figure.legends[0].get_texts()]
     assert "rig, measured, ± 2 u_val" in labels
-    shown = figures.differences(with_data, "beam", RAD_S)
-    assert shown is not None
-    assert "rig" not in [t.get_text() for t in shown.axes[0].get_yticklabels()]
+    drawing = figures.differences(with_data, "beam", RAD_S)
+    assert drawing is not None
+    assert "rig" not in [t.get_text() for t in drawing.axes[0].get_yticklabels()]

@@ -197,7 +197,7 @@ def test_pybmodes_has_the_same_modes_on_a_platform(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "more", "said"),
+    ("kind", "more", "message"),
     [
         (2, "", "moves freely"),
         (4, "", "hub_conn: 4"),
@@ -205,8 +205,8 @@ def test_pybmodes_has_the_same_modes_on_a_platform(tmp_path: Path) -> None:
         (1, WIRES.replace("6 10", "6 99"), "node_attach: 99"),
     ],
 )
-def test_what_is_not_a_tower_on_the_ground_is_refused(tmp_path: Path, kind: int, more: str, said: str) -> None:
-    with pytest.raises(CaseError, match=said):
+def test_what_is_not_a_tower_on_the_ground_is_refused(tmp_path: Path, kind: int, more: str, message: str) -> None:
+    with pytest.raises(CaseError, match=message):
         towers.read(write(tmp_path, more=more, kind=kind))
 
 

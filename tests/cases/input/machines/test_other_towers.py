@@ -80,11 +80,13 @@ def test_hawc2(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("wrong", "said"), [({"twist": 3.0}, "not straight and vertical"), ({"offset": 0.2}, "offsets of centres")]
+    ("invalid", "message"), [({"twist": 3.0}, "not straight and vertical"), ({"offset": 0.2}, "offsets of centres")]
 )
-def test_a_hawc2_tower_that_is_not_symmetric_is_refused(tmp_path: Path, wrong: dict[str, float], said: str) -> None:
-    with pytest.raises(CaseError, match=said):
-        towers.read(hawc2(tmp_path, **wrong))
+def test_a_hawc2_tower_that_is_not_symmetric_is_refused(
+    tmp_path: Path, invalid: dict[str, float], message: str
+) -> None:
+    with pytest.raises(CaseError, match=message):
+        towers.read(hawc2(tmp_path, **invalid))
 
 
 @pytest.mark.parametrize(

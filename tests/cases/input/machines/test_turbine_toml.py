@@ -116,8 +116,8 @@ def test_a_deck_on_a_floater(tmp_path: Path) -> None:
     assert "rigid ground" in " ".join(alone.source.notes)
     assert [u.why for u in alone.source.unused if u.name == "PtfmMass"] == [openfast.FLOATER]
     K, M = (np.diag(row).tolist() for row in ([2e8, 1e8, 3e9, 4e9, 5e9, 6e9], [1e6, 2e6, 3e6, 4e6, 5e6, 6e6]))
-    given = write(tmp_path, f'openfast = "{path.name}"\n[support]\nstiffness = {K}\nmass = {M}\n')
-    reading = turbines.read(given)
+    text = write(tmp_path, f'openfast = "{path.name}"\n[support]\nstiffness = {K}\nmass = {M}\n')
+    reading = turbines.read(text)
     support = reading.turbine.support
     assert support.base is not None
     assert support.mass is not None
@@ -126,7 +126,7 @@ def test_a_deck_on_a_floater(tmp_path: Path) -> None:
     np.testing.assert_array_equal(reading.turbine.nacelle, alone.turbine.nacelle)
     assert "held by the support of machine.toml, with its inertia" in " ".join(reading.source.notes)
     assert "rigid ground" not in " ".join([*reading.source.notes, *map(str, reading.source.unused)])
-    (subject,) = subjects(Request((str(given),)), lambda _: None)
+    (subject,) = subjects(Request((str(text),)), lambda _: None)
     assert isinstance(subject, TurbineSubject)
     assert subject.deck == path
     assert ExudynTurbine().unsupported_turbine(subject.turbine) is None
@@ -163,7 +163,7 @@ def test_springs_act_in_their_directions(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("old", "new", "said"),
+    ("old", "new", "message"),
     [
         ("[hub]\nmass = 3000.0\ninertia = 2000.0\ncentre = 0.1\n", "", "hub: missing"),
         ("overhang", "overhung", "overhung: unknown key"),
@@ -176,10 +176,10 @@ def test_springs_act_in_their_directions(tmp_path: Path) -> None:
         ("height = 30.0", "height = 30.0\nsupport = {soil = [[0.0, 1e6], [40.0, 1e6]]}", "30 m high"),
     ],
 )
-def test_a_wrong_file_is_refused(tmp_path: Path, old: str, new: str, said: str) -> None:
+def test_a_wrong_file_is_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
     deck(tmp_path)
     path = write(tmp_path, TURBINE.replace(old, new))
-    with pytest.raises(CaseError, match=said):
+    with pytest.raises(CaseError, match=message):
         turbines.read(path)
 
 

@@ -61,9 +61,9 @@ def read(path: Path) -> Reading | None:
     try:
         return readers.reading(path, Mount())
     except CaseError as error:
-        said = str(error)
-    assert "\n" not in said
-    assert said.startswith(str(path.parent))
+        message = str(error)
+    assert "\n" not in message
+    assert message.startswith(str(path.parent))
     return None
 
 

@@ -33,8 +33,8 @@ BENDING = 5
 def blades(tmp_path: Path) -> tuple[Blade, Blade]:
     """By HAWC2, by BeamDyn."""
     published = ("IEA_15MW_RWT_Blade_st_FPM.st", "IEA-15-240-RWT_BeamDyn_blade.dat")
-    ours = [*DATA.glob("iea15*"), Path(cases_data.__file__).with_name("iea15_beamdyn_main.dat")]
-    for file in [real(f"iea15/{name}") for name in published] + ours:
+    own_files = [*DATA.glob("iea15*"), Path(cases_data.__file__).with_name("iea15_beamdyn_main.dat")]
+    for file in [real(f"iea15/{name}") for name in published] + own_files:
         shutil.copy(file, tmp_path)
     return readers.read(tmp_path / "iea15.htc", HUB), readers.read(tmp_path / "iea15_beamdyn_main.dat", HUB)
 
@@ -51,8 +51,8 @@ def test_frequencies_agree(blades: tuple[Blade, Blade], omega: float) -> None:
 
 def test_with_the_twist_the_other_way_round_they_would_not(blades: tuple[Blade, Blade]) -> None:
     hawc2, beamdyn = blades
-    wrong = hertz(replace(hawc2, twist=-hawc2.twist), 0.0) / hertz(beamdyn, 0.0) - 1
-    assert np.abs(wrong[:2]).max() > 8e-3
+    altered = hertz(replace(hawc2, twist=-hawc2.twist), 0.0) / hertz(beamdyn, 0.0) - 1
+    assert np.abs(altered[:2]).max() > 8e-3
 
 
 def test_mass_and_its_centre_agree(blades: tuple[Blade, Blade]) -> None:

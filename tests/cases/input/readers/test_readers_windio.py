@@ -80,8 +80,8 @@ def test_wrong_files_are_told_with_line_value_and_remedy(
 def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
     path = written(tmp_path / "b.yaml", put(samples()[1], f"{BLADE}.outer_shape.twist.values.3", 4321.5))
     lines = path.read_text().splitlines()
-    (line,) = [k for k, one in enumerate(lines, 1) if "4321.5" in one]
-    path.write_text("\n".join(one.replace("4321.5", "4321.5.1") for one in lines))
+    (line,) = [k for k, entry in enumerate(lines, 1) if "4321.5" in entry]
+    path.write_text("\n".join(entry.replace("4321.5", "4321.5.1") for entry in lines))
     with pytest.raises(CaseError, match=rf"line {line}: components.blade.outer_shape.twist.values: '4321.5.1'"):
         readers.read(path)
 
@@ -192,9 +192,9 @@ def test_the_published_iea15_is_its_beamdyn_deck() -> None:
     blade = readers.read(path)
     k = [int(np.abs(blade.stations / blade.length - eta).argmin()) for eta in deck.stations / deck.length]
     for name in ("stiffness", "mass"):
-        ours, theirs = getattr(blade, name)[k], getattr(deck, name)
-        scale = np.sqrt(np.einsum("nii,njj->nij", theirs, theirs))
-        np.testing.assert_allclose(ours / scale, theirs / scale, atol=1e-10)
+        actual, expected = getattr(blade, name)[k], getattr(deck, name)
+        scale = np.sqrt(np.einsum("nii,njj->nij", expected, expected))
+        np.testing.assert_allclose(actual / scale, expected / scale, atol=1e-10)
     assert (blade.hub_radius, np.degrees(blade.precone)) == (3.97, pytest.approx(-4.0))
     np.testing.assert_allclose(blade.curve[-1], [117.0, 0.0, -4.0], atol=1e-9)
     ahead = sections(blade).shear_centre[k[15], 0] - sections(blade).mass_centre[k[15], 0]

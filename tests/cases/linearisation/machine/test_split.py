@@ -29,19 +29,19 @@ def healthy(machine: Deck) -> AzimuthSet:
     return linearised(machine)
 
 
-def compared(each: AzimuthSet, machine: Deck) -> Comparison:
-    judged = judge_set(each)
-    return compare(replace(judged, modes=spectrum(each, each.A).modes), machine)
+def compared(azimuth_set: AzimuthSet, machine: Deck) -> Comparison:
+    judged_set = judge_set(azimuth_set)
+    return compare(replace(judged_set, modes=spectrum(azimuth_set, azimuth_set.A).modes), machine)
 
 
 def test_point_masses_become_cores_restricted_turbine(machine: Deck, healthy: AzimuthSet) -> None:
     """Two derivations, point masses and geometrically exact beams in the same shapes, have the same modes."""
     fine = replace(machine, blade_nodes=1000, tower_nodes=1000)
-    made = Models(fine, healthy, models.degrees(fine, healthy), fields.points(fine))
-    structure = made.structure()
+    deck_models = Models(fine, healthy, models.degrees(fine, healthy), fields.points(fine))
+    structure = deck_models.structure()
     undamped = replace(structure, nodes=replace(structure.nodes, damping=0.0 * structure.nodes.damping))
     A = [undamped.state_matrix(part, healthy) for part in models.matrices(undamped, healthy, False, False)]
-    points, beams = models.of_states(made, np.array(A)), made.core(True)
+    points, beams = models.of_states(deck_models, np.array(A)), deck_models.core(True)
     partner, mac = fields.paired(points, beams)
     assert (partner >= 0).all()
     assert np.abs(points.values) == pytest.approx(np.abs(beams.values[partner]), rel=1e-3)
@@ -59,15 +59,17 @@ def test_a_linearisation_of_the_deck_is_explained(machine: Deck, healthy: Azimut
     assert max(abs(pair.parts[NODES]) for pair in comparison.modes) > 0.005
 
 
-def with_forces(machine: Deck, each: AzimuthSet, family: str, damping: float, stiffness: float) -> AzimuthSet:
+def with_forces(machine: Deck, azimuth_set: AzimuthSet, family: str, damping: float, stiffness: float) -> AzimuthSet:
     """The set with a damper and a spring on the motion of each blade, of a run with aerodynamics."""
-    structure = Models(machine, each, models.degrees(machine, each), fields.points(machine)).structure()
-    on = np.diag([float(each.states[k].family == family) for k in structure.coordinates])
-    A = each.A.copy()
-    for a, (M, _, _) in zip(A, models.matrices(structure, each, True, True), strict=True):
+    structure = Models(machine, azimuth_set, models.degrees(machine, azimuth_set), fields.points(machine)).structure()
+    on = np.diag([float(azimuth_set.states[k].family == family) for k in structure.coordinates])
+    A = azimuth_set.A.copy()
+    for a, (M, _, _) in zip(A, models.matrices(structure, azimuth_set, True, True), strict=True):
         a[np.ix_(structure.rates, structure.rates)] -= np.linalg.solve(M, damping * on)
         a[np.ix_(structure.rates, structure.coordinates)] -= np.linalg.solve(M, stiffness * on)
-    return replace(each, A=A, files=tuple(replace(file, modules=("ElastoDyn", "AeroDyn")) for file in each.files))
+    return replace(
+        azimuth_set, A=A, files=tuple(replace(file, modules=("ElastoDyn", "AeroDyn")) for file in azimuth_set.files)
+    )
 
 
 def test_damping_is_aerodynamics_and_stiffness_is_rest(machine: Deck, healthy: AzimuthSet) -> None:

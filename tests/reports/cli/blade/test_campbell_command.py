@@ -98,14 +98,14 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
 ) -> None:
     out = tmp_path / "out"
     line = f"campbell {beam} --rpm 0:200:50 --modes 3 --elements 8 --operating 50:150 --per-rev 1,2,9 --margin 0.05"
-    status, shown, err = southwell(f"{line} -o {out}", capsys)
+    status, output, err = southwell(f"{line} -o {out}", capsys)
     assert (status, err) == (0, "")
-    assert "At 50 to 150 rpm" in shown.splitlines()[0] or "at 50 to 150 rpm" in shown.splitlines()[0], (
+    assert "At 50 to 150 rpm" in output.splitlines()[0] or "at 50 to 150 rpm" in output.splitlines()[0], (
         "the verdict is first"
     )
     blade = library.load(str(beam)).variants[0].blade
     solved = modes(blade, 200 * np.pi / 30, 8, 3)
-    row = next(text for text in shown.splitlines() if "flapwise 1" in text and " % flapwise" in text)
+    row = next(text for text in output.splitlines() if "flapwise 1" in text and " % flapwise" in text)
     assert certain(solved.frequencies[0] / (2 * np.pi), solved.uncertainty[0]) in row.split()
     names = {p.name for p in out.iterdir()}
     assert names == {
@@ -113,7 +113,7 @@ def test_it_prints_tables_and_writes_figures_page_and_csv(
         *("span.svg", "span.png"),
         *("campbell.md", "resonances.csv", "margins.csv", "encounters.csv"),
     }
-    assert all(name in shown for name in names)
+    assert all(name in output for name in names)
     page = (out / "campbell.md").read_text()
     for needed in ("campbell.svg", "shapes.svg", "## Modes", "BldFl1Sh", "at 50 rpm … 150 rpm", "southwell"):
         assert needed in page
@@ -126,9 +126,9 @@ def test_every_frequency_has_an_uncertainty_that_holds(
     mesh: str, beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     """Against core ten thousand times as accurate as asked for; the polynomials' and the shapes' frequencies have theirs."""
-    status, shown, _ = southwell(f"campbell {beam} --rpm 0:200:100 --modes 3 {mesh} -o {tmp_path / 'out'}", capsys)
+    status, output, _ = southwell(f"campbell {beam} --rpm 0:200:100 --modes 3 {mesh} -o {tmp_path / 'out'}", capsys)
     assert status == 0
-    assert "± relative" in shown
+    assert "± relative" in output
     with (tmp_path / "out" / "campbell.csv").open() as file:
         rows = list(csv.DictReader(file))
     blade = library.load(str(beam)).variants[0].blade
@@ -136,12 +136,12 @@ def test_every_frequency_has_an_uncertainty_that_holds(
         omega: modes(blade, omega, count=7, accuracy=1e-10) for omega in {float(row["omega_rad_s"]) for row in rows}
     }
     for row in rows:
-        true, sure = exact[float(row["omega_rad_s"])], float(row["relative_uncertainty"])
+        true, uncertainty = exact[float(row["omega_rad_s"])], float(row["relative_uncertainty"])
         frequency = true.frequencies[int(row["mode"]) - 1]
-        assert abs(float(row["frequency_rad_s"]) / frequency - 1.0) <= sure + 1e-10
+        assert abs(float(row["frequency_rad_s"]) / frequency - 1.0) <= uncertainty + 1e-10
         assert float(row["steady_strain"]) == pytest.approx(true.strain, rel=0.2, abs=1e-12)
-    asked = {"": 1e-6, "--accuracy 1e-4": 1e-4}.get(mesh, np.inf)
-    assert max(float(row["relative_uncertainty"]) for row in rows) <= asked
+    accuracy = {"": 1e-6, "--accuracy 1e-4": 1e-4}.get(mesh, np.inf)
+    assert max(float(row["relative_uncertainty"]) for row in rows) <= accuracy
     for name in ("shapes.csv", "resonances.csv", "encounters.csv"):
         assert "relative_uncertainty" in (tmp_path / "out" / name).read_text().splitlines()[0].split(",")
 
@@ -154,9 +154,9 @@ def test_large_strains_are_refused_unless_allowed_and_then_told(
     status, _, err = southwell(line, capsys)
     assert status == 2
     assert "(--allow-large-strain)" in err
-    status, shown, _ = southwell(f"{line} --allow-large-strain", capsys)
+    status, output, _ = southwell(f"{line} --allow-large-strain", capsys)
     assert status == 0
-    assert "steady strain up to" in shown
+    assert "steady strain up to" in output
     assert "steady strain up to" in (tmp_path / "campbell.md").read_text()
 
 
@@ -171,11 +171,11 @@ def test_a_blades_own_file_needs_speeds_and_says_how_it_was_read(
         2,
         f"southwell: --rpm: missing: {file} does not define rotor speeds: give them, as in 0:15:0.5\n",
     )
-    status, shown, _ = southwell(
+    status, output, _ = southwell(
         f"campbell {file} --omega 0:20:10 --modes 2 --hub-radius 3 --elements 8 -o {out}", capsys
     )
     assert status == 0
-    assert "Southwell TOML: blade.toml" in shown
+    assert "Southwell TOML: blade.toml" in output
     page = (out / "campbell.md").read_text()
     assert "Southwell TOML: blade.toml" in page
     assert f"blade.toml, SHA-256 `{sha256(file.read_bytes()).hexdigest()}`" in page
@@ -212,9 +212,9 @@ def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
 ) -> None:
     path = Path(os.environ["SOUTHWELL_BLADES"]) / file
     line = f"campbell {path} {mount} --rpm 0:12:4 --modes 3 --elements 24 --operating 4:12 -o {tmp_path}"
-    status, shown, err = southwell(line, capsys)
+    status, output, err = southwell(line, capsys)
     assert (status, err) == (0, "")
-    assert first in shown
+    assert first in output
     rows = [row.split(",") for row in (tmp_path / "campbell.csv").read_text().splitlines()]
     name, place = rows[0].index("name"), rows[0].index("speed_number")
     assert [row[name] for row in rows[1:] if row[place] == "1"] == ["flapwise 1", "edgewise 1", "flapwise 2"]
@@ -222,11 +222,11 @@ def test_real_blade_files_are_drawn_with_first_flap_and_edge_in_their_order(
 
 @pytest.mark.slow
 def test_of_a_case_with_several_blades_each_has_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    status, shown, _ = southwell(f"campbell park-blade --modes 1 --elements 10 -o {tmp_path / 'out'}", capsys)
+    status, output, _ = southwell(f"campbell park-blade --modes 1 --elements 10 -o {tmp_path / 'out'}", capsys)
     assert status == 0
     labels = {v.name.partition("/")[2] for v in library.load("park-blade").variants}
     assert {p.name for p in (tmp_path / "out").iterdir()} == labels
-    assert "30 rpm" in shown  # in the head of a column
+    assert "30 rpm" in output  # in the head of a column
 
 
 @pytest.mark.slow
@@ -322,9 +322,9 @@ def test_help_is_there(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.slow
 def test_the_report_of_one_blade_is_one_file(beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """Input, properties, conventions and results; figures are embedded."""
-    status, shown, _ = southwell(f"campbell {beam} --rpm 0,100 --modes 2 --elements 6 --html -o {tmp_path}", capsys)
+    status, output, _ = southwell(f"campbell {beam} --rpm 0,100 --modes 2 --elements 6 --html -o {tmp_path}", capsys)
     assert status == 0
-    assert "campbell.html" in shown
+    assert "campbell.html" in output
     page = (tmp_path / "campbell.html").read_text(encoding="utf-8")
     for heading in (
         "Input",
@@ -347,9 +347,9 @@ def test_every_table_of_the_page_is_in_the_pdf(beam: Path, tmp_path: Path, capsy
     points = tmp_path / "rig.csv"
     points.write_text("speed [rpm],measured [Hz],mode\n100,9.9,1\n")
     line = f"campbell {beam} --rpm 0,50,100 --modes 3 --elements 6 --operating 20:90 --against park-cantilever"
-    status, shown, err = southwell(f"{line} --add rig={points} --data-uncertainty 1% --pdf -o {tmp_path}", capsys)
+    status, output, err = southwell(f"{line} --add rig={points} --data-uncertainty 1% --pdf -o {tmp_path}", capsys)
     assert status == 0, err
-    assert "campbell.pdf" in shown
+    assert "campbell.pdf" in output
     page = (tmp_path / "campbell.md").read_text(encoding="utf-8")
     assert page.count("\n## ") > 8
     assert printed.missing(page, printed.read(tmp_path / "campbell.pdf")) == []
@@ -375,8 +375,8 @@ def test_gravity_and_the_frozen_azimuth_are_stated_first(
     beam: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     line = f"campbell {beam} --rpm 0,50 --modes 1 --elements 4 --azimuth 90 --tilt 5 -o {tmp_path}"
-    status, shown, _ = southwell(line, capsys)
+    status, output, _ = southwell(line, capsys)
     assert status == 0
     first = "gravity: steady, with the blade frozen at azimuth 90° (0: up) and the rotor axis tilted by 5°"
-    assert shown.startswith(first)
+    assert output.startswith(first)
     assert first in (tmp_path / "campbell.md").read_text(encoding="utf-8")

@@ -23,11 +23,11 @@ def southwell(line: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, 
 def test_a_deck_becomes_a_diagram_of_the_turbine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = deck(tmp_path), tmp_path / "out"
     line = f"campbell {path} --rpm 0:24:6 --modes 4 --operating 6:24 --strict --margin 90% -o {out}"
-    status, shown, err = southwell(line, capsys)
+    status, output, err = southwell(line, capsys)
     assert (status, err) == (1, "")  # margins are violated
-    assert shown.startswith("small.fst: the whole turbine on rigid ground")
-    assert "not used: DTTorDmp" in shown
-    assert "not used: TwrFADmp(1)" in shown
+    assert output.startswith("small.fst: the whole turbine on rigid ground")
+    assert "not used: DTTorDmp" in output
+    assert "not used: TwrFADmp(1)" in output
     page = (out / "campbell.md").read_text()
     for name in ("1st tower fore-aft", "1st edge backward whirl", "Crossings", "DTTorDmp"):
         assert name in page
@@ -43,24 +43,24 @@ def test_one_blade_of_a_turbine_on_request(tmp_path: Path, capsys: pytest.Captur
     assert "--azimuth" in err
     assert "--blade-only" in err
     line = f"campbell {path} --blade-only --rpm 0:20:10 --modes 1 --elements 8 -o {tmp_path / 'out'}"
-    status, shown, _ = southwell(line, capsys)
+    status, output, _ = southwell(line, capsys)
     assert status == 0
-    assert "one blade of the turbine, clamped at the hub" in shown
+    assert "one blade of the turbine, clamped at the hub" in output
 
 
 def test_an_htc_becomes_a_diagram_of_the_turbine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = htc_decks.htc(tmp_path)
-    status, shown, err = southwell(f"campbell {path} --modes 2 --rpm 0,20 -o {tmp_path / 'out'}", capsys)
+    status, output, err = southwell(f"campbell {path} --modes 2 --rpm 0,20 -o {tmp_path / 'out'}", capsys)
     assert (status, err) == (0, "")
-    assert shown.startswith("small.htc: the whole turbine on rigid ground")
-    assert "taken as rigid, with all mass: towertop below 0.001 %" in shown
+    assert output.startswith("small.htc: the whole turbine on rigid ground")
+    assert "taken as rigid, with all mass: towertop below 0.001 %" in output
 
 
 def test_modes_of_a_tower(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     deck(tmp_path)
-    status, shown, err = southwell(f"modes {tmp_path / 'tower.dat'} --modes 2", capsys)
+    status, output, err = southwell(f"modes {tmp_path / 'tower.dat'} --modes 2", capsys)
     assert (status, err) == (0, "")
-    assert "flapwise is fore-aft" in shown
+    assert "flapwise is fore-aft" in output
 
 
 def test_lines_margins_and_uncertainty(tmp_path: Path) -> None:

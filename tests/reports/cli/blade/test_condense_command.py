@@ -251,10 +251,10 @@ def test_matrices_that_calculix_stored(tmp_path: Path) -> None:
 
 
 def run(capsys: pytest.CaptureFixture[str], *arguments: str) -> tuple[int, str, str]:
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         cli.main(["condense", *arguments])
     out, err = capsys.readouterr()
-    return int(ended.value.code or 0), out, err
+    return int(exit_info.value.code or 0), out, err
 
 
 @pytest.mark.slow
@@ -274,8 +274,8 @@ def test_a_file_by_the_command(
     assert sum(float(row[2]) for row in rows if len(row) == 11 and row[0].isdigit()) == pytest.approx(11.1353, rel=1e-4)
     status, out, _ = run(capsys, str(tmp_path / "segments.json"), "--rpm", "954.9296585", "-o", str(tmp_path / "again"))
     assert status == 0
-    again = [line.split("|")[4].strip() for line in out.splitlines() if line.startswith("| 954.93")]
-    assert again[:2] == [certain(f / (2 * np.pi), u) for f, u in expected[:2]]
+    second = [line.split("|")[4].strip() for line in out.splitlines() if line.startswith("| 954.93")]
+    assert second[:2] == [certain(f / (2 * np.pi), u) for f, u in expected[:2]]
 
 
 @pytest.mark.parametrize(

@@ -18,9 +18,9 @@ DATA = Path(__file__).parents[3] / "data" / "blades"
 def test_any_blade_in_toml(tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str) -> None:
     out = tmp_path / "blade.toml"
     hub = "--hub-radius 1.5" if file in ("beamdyn_main.dat", "hawc2.htc") else ""
-    status, shown, err = southwell(f"convert {DATA / file} {out} {hub}", capsys)
+    status, output, err = southwell(f"convert {DATA / file} {out} {hub}", capsys)
     assert (status, err) == (0, "")
-    assert str(out) in shown
+    assert str(out) in output
     assert_same(readers.read(out), readers.read(DATA / file, Mount(hub_radius=1.5) if hub else None))
 
 
@@ -29,11 +29,11 @@ def test_for_beamdyn_two_files_and_what_the_main_file_must_say(
 ) -> None:
     out = tmp_path / "it.dat"
     line = f"convert {DATA / 'beamdyn_main.dat'} {out} --to beamdyn --hub-radius 2 --precone -2.5 --pitch 3"
-    status, shown, _ = southwell(line, capsys)
+    status, output, _ = southwell(line, capsys)
     assert status == 0
-    assert f"{out}, {tmp_path / 'it_blade.dat'}" in shown
-    assert "must say HubRad = 2, PreCone(1) = -2.5; the pitch is in none of the files" in shown
-    assert "BlPitch(1) = -3 in OpenFAST, --pitch 3 here" in shown  # OpenFAST's pitch has the other sign
+    assert f"{out}, {tmp_path / 'it_blade.dat'}" in output
+    assert "must say HubRad = 2, PreCone(1) = -2.5; the pitch is in none of the files" in output
+    assert "BlPitch(1) = -3 in OpenFAST, --pitch 3 here" in output  # OpenFAST's pitch has the other sign
     mount = Mount(hub_radius=2.0, precone=np.radians(-2.5), pitch=np.radians(3.0))
     assert_same(readers.read(out, mount), readers.read(DATA / "beamdyn_main.dat", mount), 1e-12)
 
@@ -43,10 +43,10 @@ def test_for_elastodyn_with_its_length(tmp_path: Path, capsys: pytest.CaptureFix
     line = f"convert {DATA / 'elastodyn_blade.dat'} {out} --to elastodyn --length 50 --hub-radius 1.5 --precone 0 --pitch 0"
     source = tmp_path / "alone.dat"  # without the main file that lies beside it
     source.write_bytes((DATA / "elastodyn_blade.dat").read_bytes())
-    status, shown, _ = southwell(line.replace(str(DATA / "elastodyn_blade.dat"), str(source)), capsys)
+    status, output, _ = southwell(line.replace(str(DATA / "elastodyn_blade.dat"), str(source)), capsys)
     assert status == 0
-    assert "must say TipRad = 51.5, HubRad = 1.5, PreCone(1) = 0" in shown
-    assert "BlPitch(1) =" not in shown
+    assert "must say TipRad = 51.5, HubRad = 1.5, PreCone(1) = 0" in output
+    assert "BlPitch(1) =" not in output
     mount = Mount(length=50.0, hub_radius=1.5)
     assert_same(readers.read(out, mount), readers.read(source, mount), 1e-12)
 
@@ -76,8 +76,8 @@ def test_one_blade_of_a_case(tmp_path: Path, capsys: pytest.CaptureFixture[str])
 def test_bad_input_is_one_line_and_status_2(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, phrase: str
 ) -> None:
-    status, shown, err = southwell(line.format(out=tmp_path / "out", data=DATA), capsys)
-    assert (status, shown) == (2, "")
+    status, output, err = southwell(line.format(out=tmp_path / "out", data=DATA), capsys)
+    assert (status, output) == (2, "")
     assert phrase in err
     assert err.count("\n") == 1
     assert not list(tmp_path.iterdir())

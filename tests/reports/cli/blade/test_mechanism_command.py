@@ -38,10 +38,10 @@ def hung(folder: Path, EA: float) -> str:
 
 def southwell(capsys: Captured, *arguments: str) -> tuple[int, str, str]:
     """Status, standard output and standard error."""
-    with pytest.raises(SystemExit) as ended:
+    with pytest.raises(SystemExit) as exit_info:
         main(["mechanism", *arguments])
     out, err = capsys.readouterr()
-    return int(ended.value.code or 0), out, err
+    return int(exit_info.value.code or 0), out, err
 
 
 def test_a_large_strain_is_reported_and_so_is_the_discretisation(tmp_path: Path, capsys: Captured) -> None:

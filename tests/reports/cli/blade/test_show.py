@@ -69,14 +69,14 @@ def test_nrel_5mw_says_how_it_was_read(capsys: pytest.CaptureFixture[str]) -> No
     blade = str(real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"))
     status, out, _ = run(capsys, blade, "--length", "61.5", "--hub-radius", "1.5", "--precone", "-2.5")
     assert status == 0
-    for said in (
+    for message in (
         "17608.8 kg",
         "AdjBlMs = 1.04536",
         "y to the trailing edge",
         "-2.5° (positive downwind)",
         "13 of 49 stations",
     ):
-        assert said in out
+        assert message in out
     assert "rigid" in out
 
 
@@ -132,7 +132,7 @@ def test_blades_of_a_case_each_have_a_folder(
 
 
 @pytest.mark.parametrize(
-    ("arguments", "said"),
+    ("arguments", "message"),
     [
         (["none.dat"], "none.dat: no such file"),
         ([str(DATA / "hawc2_st.dat")], "choose one with --subset"),
@@ -153,13 +153,13 @@ def test_blades_of_a_case_each_have_a_folder(
     ],
 )
 def test_bad_input_is_one_line_and_status_2(
-    capsys: pytest.CaptureFixture[str], arguments: list[str], said: str
+    capsys: pytest.CaptureFixture[str], arguments: list[str], message: str
 ) -> None:
     status, out, err = run(capsys, *arguments)
     assert (status, out) == (2, "")
     assert err.count("\n") == 1
     assert err.startswith("southwell: ")
-    assert said in err
+    assert message in err
 
 
 def test_a_folder_that_cannot_be_written(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

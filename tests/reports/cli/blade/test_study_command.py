@@ -83,7 +83,7 @@ def test_a_speed_without_a_frequency_is_status_1_with_its_reason(
 
 
 @pytest.mark.parametrize(
-    ("before", "after", "said"),
+    ("before", "after", "message"),
     [
         ('"park-cantilever"', '"park-cantilevr"', "case: 'park-cantilevr' is not known: did you mean park-cantilever?"),
         ('"park-cantilever"', '"no.dat"', "no.dat: no such file"),
@@ -109,14 +109,14 @@ def test_a_speed_without_a_frequency_is_status_1_with_its_reason(
     ],
 )
 def test_an_error_of_the_study_file_is_one_line(
-    before: str, after: str, said: str, capsys: pytest.CaptureFixture[str], folder: Path
+    before: str, after: str, message: str, capsys: pytest.CaptureFixture[str], folder: Path
 ) -> None:
     given = text(samples=2)
     assert before in given
     (folder / "study.toml").write_text(given.replace(before, after))
     status, _, err = run(capsys, "study.toml")
     assert status == 2
-    assert said in err
+    assert message in err
     assert err.count("\n") == 1
     assert [path.name for path in folder.iterdir()] == ["study.toml"]
 
@@ -129,7 +129,7 @@ def test_samples_without_properties_are_refused(capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize(
-    ("options", "said"),
+    ("options", "message"),
     [
         (["--out", "out.csv"], "--out out.csv: neither JSON Lines nor Parquet"),
         (["--out", "no/such/out.jsonl"], "--out no/such/out.jsonl: cannot be written (No such file or directory)"),
@@ -140,10 +140,12 @@ def test_samples_without_properties_are_refused(capsys: pytest.CaptureFixture[st
         ),
     ],
 )
-def test_an_error_of_the_options_is_one_line(options: list[str], said: str, capsys: pytest.CaptureFixture[str]) -> None:
+def test_an_error_of_the_options_is_one_line(
+    options: list[str], message: str, capsys: pytest.CaptureFixture[str]
+) -> None:
     status, _, err = run(capsys, "study.toml", *options)
     assert (status, err.count("\n")) == (2, 1)
-    assert said in err
+    assert message in err
 
 
 @pytest.mark.slow
@@ -160,8 +162,8 @@ def test_a_blade_file_is_in_the_folder_of_the_study(capsys: pytest.CaptureFixtur
     assert status == 0, err
     assert "2 frequencies of 1 samples at 2 speeds" in out
     (folder / "blade.dat").write_bytes(deck.read_bytes())
-    given = (inner / "study.toml").read_text().replace('"blade.dat"', '"../blade.dat"')
-    (inner / "study.toml").write_text(given)
+    text = (inner / "study.toml").read_text().replace('"blade.dat"', '"../blade.dat"')
+    (inner / "study.toml").write_text(text)
     status, _, err = run(capsys, "inner/study.toml", "--out", "other.jsonl")
     assert (status, err.count("\n")) == (2, 1)
     assert f"outside {inner}: a file may name files in its folder only" in err

@@ -13,10 +13,10 @@ def test_modes_of_a_tower_in_toml(tmp_path: Path, capsys: pytest.CaptureFixture[
     path = write(tmp_path, TOWER)
     with pytest.raises(SystemExit) as exit_:
         app.main(["modes", str(path), "--modes", "3"])
-    shown = " ".join(capsys.readouterr().out.split())
+    output = " ".join(capsys.readouterr().out.split())
     assert not exit_.value.code
-    assert "1st side-side 0.6256" in shown
-    assert "rigid ground" in shown
+    assert "1st side-side 0.6256" in output
+    assert "rigid ground" in output
     with pytest.raises(SystemExit):
         app.main(["modes", str(path), "--modes", "2", "--json"])
     rows = json.loads(capsys.readouterr().out)

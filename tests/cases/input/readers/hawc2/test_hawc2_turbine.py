@@ -151,8 +151,8 @@ def test_a_shaft_without_generator_does_not_twist(tmp_path: Path) -> None:
 def test_a_flexible_shaft_is_stated(tmp_path: Path) -> None:
     rows = {"shaft": deck.shaft(2.5, 2e7, bending=1e9), "hub1": deck.rigid(1.0, stiff=1e10)}
     notes = hawc2.read(deck.htc(tmp_path, rows)).source.notes
-    (said,) = [note for note in notes if note.startswith("taken as rigid")]
-    shaft = said.partition("shaft besides its torsion ")[2]
+    (message,) = [note for note in notes if note.startswith("taken as rigid")]
+    shaft = message.partition("shaft besides its torsion ")[2]
     assert 0.1 < float(shaft.split()[0]) < 10.0
     assert "flap" in shaft.split(")")[0]
 
@@ -174,13 +174,13 @@ LACKING = {
 
 @pytest.mark.parametrize("name", LACKING)
 def test_what_lacks_a_body_is_one_blade(tmp_path: Path, name: str) -> None:
-    old, new, said = LACKING[name]
+    old, new, message = LACKING[name]
     path = deck.htc(tmp_path)
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new))
     assert not turbines.is_turbine(path)
-    assert f"not the whole turbine: {said}" in " ".join(readers.reading(path).source.notes)
+    assert f"not the whole turbine: {message}" in " ".join(readers.reading(path).source.notes)
     with pytest.raises(CaseError, match="--blade-only takes one blade"):
         turbines.read(path)
 
@@ -208,17 +208,17 @@ REFUSED = {
 
 @pytest.mark.parametrize("name", REFUSED)
 def test_what_is_no_turbine_of_this_kind_is_refused(tmp_path: Path, name: str) -> None:
-    old, new, said = REFUSED[name]
+    old, new, message = REFUSED[name]
     path = deck.htc(tmp_path)
     text = path.read_text()
     assert old in text
     path.write_text(text.replace(old, new))
     aside = deck.rigid(1.1, 500.0, (0.1, 0.0, 0.4))
     (tmp_path / "aside.st").write_text("#1 aside\n$1 2\n" + "\n".join(aside) + "\n")
-    if said is None:  # a uniform body may be longer than its table
+    if message is None:  # a uniform body may be longer than its table
         assert hawc2.read(path).turbine.drivetrain.stiffness == pytest.approx(2e7 * 2.5 / 3.5)
         return
-    with pytest.raises(CaseError, match=rf"{said}.*--blade-only takes one blade"):
+    with pytest.raises(CaseError, match=rf"{message}.*--blade-only takes one blade"):
         hawc2.read(path)
 
 

@@ -52,7 +52,7 @@ def test_columns_are_where_the_table_says() -> None:
 
 
 @pytest.mark.parametrize(
-    ("twist", "column", "there"),
+    ("twist", "column", "expected_indices"),
     [
         (0.0, "FlpcgOf", [0, 0, 1]),  # towards the suction side: downwind
         (0.0, "EdgcgOf", [0, -1, 0]),  # towards the trailing edge: against the motion
@@ -64,11 +64,11 @@ def test_columns_are_where_the_table_says() -> None:
     ],
 )
 def test_the_mass_lies_on_the_side_that_the_column_names(
-    tmp_path: Path, twist: float, column: str, there: list[int] | None
+    tmp_path: Path, twist: float, column: str, expected_indices: list[int] | None
 ) -> None:
     path = table(tmp_path, {column: [0.1, 0.1, 0.1]}, twist)
     centre = about_root(readers.read(path, MOUNT)).centre
-    np.testing.assert_allclose(centre[1:], 0.1 * np.array(there or [0, 0, 0])[1:], atol=1e-12)
+    np.testing.assert_allclose(centre[1:], 0.1 * np.array(expected_indices or [0, 0, 0])[1:], atol=1e-12)
     assert centre[0] == pytest.approx(20.0)
 
 
@@ -109,10 +109,10 @@ def test_offsets_can_be_left_out_and_are_then_listed(tmp_path: Path) -> None:
     zero = readers.reading(table(tmp_path, {}), replace(MOUNT, offsets=False))
     np.testing.assert_array_equal(reading.blade.curve[:, 1:], 0.0)
     assert not sections(reading.blade).mass_centre.any()
-    said = {u.name: u for u in reading.source.unused}
-    assert said["PrecrvRef"].largest == 0.9
-    assert said["EdgcgOf"].largest == 0.16  # the file writes Edgcgof
-    assert set(OFFSETS) <= set(said)
+    unused_by_name = {u.name: u for u in reading.source.unused}
+    assert unused_by_name["PrecrvRef"].largest == 0.9
+    assert unused_by_name["EdgcgOf"].largest == 0.16  # the file writes Edgcgof
+    assert set(OFFSETS) <= set(unused_by_name)
     assert not set(OFFSETS) & {u.name for u in zero.source.unused}
 
 

@@ -29,11 +29,11 @@ def test_matrices_keep_their_energy_and_the_centres_their_side() -> None:
     text = BLADE.read_text().split("DISTRIBUTED PROPERTIES---------------------------------\n")[1].split()
     stiffness, mass = (np.array(text[1 + 36 * k : 37 + 36 * k], float).reshape(6, 6) for k in (0, 1))
     rng = np.random.default_rng(1)
-    for theirs in rng.standard_normal((5, 6)):
-        vx, vy, vz, wx, wy, wz = theirs
-        ours = np.array([vz, -vy, vx, wz, -wy, wx])
-        assert ours @ blade.mass[0] @ ours == pytest.approx(theirs @ mass @ theirs, rel=1e-12)
-        assert ours @ blade.stiffness[0] @ ours == pytest.approx(theirs @ stiffness @ theirs, rel=1e-12)
+    for expected in rng.standard_normal((5, 6)):
+        vx, vy, vz, wx, wy, wz = expected
+        actual = np.array([vz, -vy, vx, wz, -wy, wx])
+        assert actual @ blade.mass[0] @ actual == pytest.approx(expected @ mass @ expected, rel=1e-12)
+        assert actual @ blade.stiffness[0] @ actual == pytest.approx(expected @ stiffness @ expected, rel=1e-12)
     m = blade.mass[0]
     assert m[0, 0] == 300.0
     assert (-m[0, 5] / 300, m[0, 4] / 300) == pytest.approx((0.2, 0.05))  # 0.2 m ahead, 0.05 m downwind
@@ -111,18 +111,18 @@ def test_rigid_strains_are_not_written(tmp_path: Path) -> None:
 
 def test_nrel_5mw_is_the_blade_of_its_elastodyn_file() -> None:
     """Two files of one blade by other hands: the same mass, flap and edge stiffness and twist, to the printed digit."""
-    ours = beamdyn.read(real("nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat")).blade
+    actual = beamdyn.read(real("nrel5mw/NRELOffshrBsline5MW_BeamDyn.dat")).blade
     other = elastodyn.read(
         real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"), Mount(length=61.5, multipliers=(1.0, 1.0, 1.0))
     ).blade
-    assert straight(ours)
-    assert ours.length == 61.5
-    at = [int(np.abs(ours.stations - s).argmin()) for s in other.stations]
-    np.testing.assert_allclose(ours.stations[at], other.stations, atol=1e-9)
+    assert straight(actual)
+    assert actual.length == 61.5
+    at = [int(np.abs(actual.stations - s).argmin()) for s in other.stations]
+    np.testing.assert_allclose(actual.stations[at], other.stations, atol=1e-9)
     for i in (4, 5):
-        np.testing.assert_allclose(ours.stiffness[at, i, i], other.stiffness[:, i, i], rtol=1e-6)
-    np.testing.assert_allclose(ours.mass[at, 0, 0], other.mass[:, 0, 0], rtol=1e-6)
-    assert np.abs(np.degrees(ours.twist[at] - other.twist)).max() < 0.2  # given at key points, between which it bends
+        np.testing.assert_allclose(actual.stiffness[at, i, i], other.stiffness[:, i, i], rtol=1e-6)
+    np.testing.assert_allclose(actual.mass[at, 0, 0], other.mass[:, 0, 0], rtol=1e-6)
+    assert np.abs(np.degrees(actual.twist[at] - other.twist)).max() < 0.2  # given at key points, between which it bends
 
 
 def edited(tmp_path: Path, file: Path, old: str, new: str, count: int = 1) -> Path:
@@ -195,9 +195,9 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("what", BAD)
-def test_bad_files_are_refused_with_line_and_value(tmp_path: Path, what: str) -> None:
-    file, old, new, message = BAD[what]
+@pytest.mark.parametrize("kind", BAD)
+def test_bad_files_are_refused_with_line_and_value(tmp_path: Path, kind: str) -> None:
+    file, old, new, message = BAD[kind]
     with pytest.raises(CaseError, match=message) as caught:
         readers.read(edited(tmp_path, file, old, new))
     assert "\n" not in str(caught.value)

@@ -138,10 +138,10 @@ def test_decks_that_come_with_pybmodes_are_read_as_it_reads_them() -> None:
     for deck in decks:
         content = elastodyn.read(deck)
         main = read_elastodyn_main(deck)
-        theirs = read_elastodyn_blade(content.source.files[0])
+        expected = read_elastodyn_blade(content.source.files[0])
         assert content.blade.length == pytest.approx(main.tip_rad - main.hub_rad, rel=1e-14)
-        np.testing.assert_allclose(content.blade.stiffness[:, 4, 4], theirs.adj_fl_st * theirs.flp_stff, rtol=1e-14)
-        np.testing.assert_allclose(content.blade.mass[:, 0, 0], theirs.adj_bl_ms * theirs.b_mass_den, rtol=1e-14)
+        np.testing.assert_allclose(content.blade.stiffness[:, 4, 4], expected.adj_fl_st * expected.flp_stff, rtol=1e-14)
+        np.testing.assert_allclose(content.blade.mass[:, 0, 0], expected.adj_bl_ms * expected.b_mass_den, rtol=1e-14)
 
 
 def edited(tmp_path: Path, old: str, new: str, count: int = 1) -> Path:
@@ -203,9 +203,9 @@ BAD = {
 }
 
 
-@pytest.mark.parametrize("what", BAD)
-def test_bad_files_are_refused_with_line_and_value(tmp_path: Path, what: str) -> None:
-    (old, new), message = BAD[what]
+@pytest.mark.parametrize("kind", BAD)
+def test_bad_files_are_refused_with_line_and_value(tmp_path: Path, kind: str) -> None:
+    (old, new), message = BAD[kind]
     with pytest.raises(CaseError, match=message) as caught:
         elastodyn.read(edited(tmp_path, old, new), MOUNT)
     assert "\n" not in str(caught.value)

@@ -139,11 +139,11 @@ def test_nrel_5mw_against_published_frequencies() -> None:
     """FAST and ADAMS differ by up to 15 % from each other; each frequency is within 2 % of their range."""
     read = turbine.read(NREL).turbine
     locked = replace(read, drivetrain=replace(read.drivetrain, free=False), yaw=9.02832e9)
-    made = machine(locked)
-    rotor = rigid_rotor(locked, made.blade_mesh)
+    full_machine = machine(locked)
+    rotor = rigid_rotor(locked, full_machine.blade_mesh)
     assert rotor[0, 0] == pytest.approx(110_000, rel=5e-3)  # kg, printed
     assert read.nacelle[0, 0] == 240_000
-    modes = turbine_modes(made, 0.0, 14)
+    modes = turbine_modes(full_machine, 0.0, 14)
     at = dict(zip(modes.names, modes.frequencies / (2 * np.pi), strict=True))
     for name, both in PUBLISHED.items():
         if name not in ("1st edge tilt", "1st edge yaw", "2nd tower side-side"):  # other names of mixed motions
@@ -221,7 +221,7 @@ def test_oc3_monopile_is_in_the_middle_of_its_participants() -> None:
     )
     light, heavy = (
         dict(zip(m.names, m.frequencies / (2 * np.pi), strict=True))
-        for m in (turbine_modes(machine(made), 0.0, 8) for made in machines)
+        for m in (turbine_modes(machine(full_machine), 0.0, 8) for full_machine in machines)
     )
     for name in ("1st tower fore-aft", "1st tower side-side"):
         assert light[name] == pytest.approx(OC3[name][0], rel=1.5e-3)
@@ -252,8 +252,8 @@ def test_the_rotor_is_carried_by_the_tower(tmp_path: Path) -> None:
     read = turbine.read(deck(tmp_path, yaw=False)).turbine
     locked = replace(read, drivetrain=replace(read.drivetrain, stiffness=np.inf))
     stiff = replace(locked, blade=replace(locked.blade, stiffness=1e4 * locked.blade.stiffness))
-    made = machine(stiff)
-    tip = read.nacelle + transformed(rigid_rotor(stiff, made.blade_mesh), read.shaft)
+    full_machine = machine(stiff)
+    tip = read.nacelle + transformed(rigid_rotor(stiff, full_machine.blade_mesh), read.shaft)
     tower = replace(read.tower, tip_mass=np.ascontiguousarray(tip))
     exact = solve.modes(tower, 0.0, count=2, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
-    np.testing.assert_allclose(turbine_modes(made, 0.0, 2).frequencies, exact, rtol=1e-4)
+    np.testing.assert_allclose(turbine_modes(full_machine, 0.0, 2).frequencies, exact, rtol=1e-4)

@@ -64,9 +64,9 @@ def test_the_diagram_of_two_blades(tmp_path: Path, capsys: pytest.CaptureFixture
     with pytest.raises(SystemExit) as stop:
         app.main(f"campbell {path} --rpm 16,20 --modes 2 -o {out}".split())
     assert stop.value.code == 0
-    shown = " ".join(capsys.readouterr().out.split())
-    assert "hub and 2 blades" in shown
-    assert "those of the two blades in the rotor's" in shown
+    output = " ".join(capsys.readouterr().out.split())
+    assert "hub and 2 blades" in output
+    assert "those of the two blades in the rotor's" in output
     for name in ("teeter", "1st tower fore-aft", "1st tower side-side"):
         assert name in (out / "campbell.csv").read_text()
     with pytest.raises(CaseError, match=r"at rest depend on the azimuth; give speeds above 0, as in 0\.5"):
