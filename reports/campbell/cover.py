@@ -47,7 +47,9 @@ def cover(origin: InputOrigin) -> str:
         for path in origin.files
     ]
     if origin.unused:
-        items.append({"": "not used", "value": f"{len(origin.unused)} non-zero quantities, listed below"})
+        count = len(origin.unused)
+        listed = f"{count} non-zero {'quantity' if count == 1 else 'quantities'}, listed below"
+        items.append({"": "not used", "value": listed})
     libraries = ", ".join(f"{name} {version(name)}" for name in LIBRARIES)
     items.append({"": "computed", "value": f"{datetime.now(UTC):%Y-%m-%d %H:%M} UTC"})
     program = f"southwell {version('southwell')}, Python {platform.python_version()}, {libraries}"

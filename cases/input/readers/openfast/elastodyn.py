@@ -210,7 +210,7 @@ def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns
     if rigid:
         out.append(f"{' and '.join(rigid)} stiffness not in this format: treated as rigid; shear is rigid")
     if "FlpIner" not in columns:
-        out.append("sectional moments of inertia are not in this format: zero")
+        out.append("sectional moments of inertia are not in this format: taken as zero")
     if main is not None:
         out.append("tower, nacelle, hub and drive train of the main file are not part of the blade")
     if main is None:
