@@ -116,7 +116,7 @@ def block(run: Run) -> str:
     return f"""{heat(run)}
 
 Each field shows the worst verdict of all modes and speeds, and the largest difference from Southwell's own solver with that
-verdict (a known difference is from it with all effects). {LEGEND}.{f" Omitted columns: {omitted}." if omitted else ""}
+verdict (known differences are from the solver with all effects). {LEGEND}.{f" Omitted columns: {omitted}." if omitted else ""}
 
 ## {CASE} at {summary.units(run, CASE).at(OMEGA)}, Table 1 of Park et al. (2010)
 
@@ -130,7 +130,7 @@ def results_page() -> str:
     """The site's page of results, from the stored rows."""
     return f"""# Results
 
-Results of `make verify`. Each row is a blade, each column a code or a published table; [how to read a
+This page shows the results of `make verify`. Each row is a blade, each column a code or a published table; [how to read a
 verdict](reading-a-verdict.md) explains the signs. The column *paper's equations, literally* checks Southwell's fast
 solver against the equations of Park et al. (2010), written out with dense matrices.
 

@@ -73,14 +73,14 @@ _ASSUMED = rotating_beams.data()["uncertainty"]
 
 _HEAD = f"""## The rotating beams of Epps and Chandra
 
-Thin strips, clamped at a distance from the rotor axis. The aluminium strips have a swept tip. The measurements were known
-before the models were written, but the models have no free parameters: they are the beams as printed, and none was adjusted.
-The paper itself was not available; the secondary source is named with each beam.
+The beams are thin strips, clamped at a distance from the rotor axis. The aluminium strips have a swept tip. The measurements
+were known before the models were written, but the models have no free parameters: they are the beams as printed, and none was
+adjusted. The paper itself was not available; the secondary source is named with each beam.
 
 Source: {rotating_beams.data()["citation"]}.
 
-- Assumed, as one standard uncertainty of the inputs: {100 * _ASSUMED["stiffness"]:g} % of all stiffness (1 % of the thickness),
-  {100 * _ASSUMED["mass"]:g} % of all mass. The clamp, the hub radius and the speed are treated as exact.
+- The assumed standard uncertainties of the inputs are {100 * _ASSUMED["stiffness"]:g} % of all stiffness (1 % of the
+  thickness) and {100 * _ASSUMED["mass"]:g} % of all mass. The clamp, the hub radius and the speed are treated as exact.
 - u_num is the uncertainty of Southwell's own solver after refinement.
 - u_D is {rotating_beams.data()["aluminium"]["measured"]:g} Hz for the aluminium beams: the scatter of their first
   frequency, which hardly depends on the sweep. For the composite beam, whose frequencies were read off a figure,

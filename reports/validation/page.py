@@ -94,15 +94,15 @@ def figure(model: Simulated, points: Sequence[Point]) -> Figure:
 
 _HEAD = f"""# Measured rotors
 
-A measurement is not a code. It does not confirm or contradict a solver; it shows how far the *model* is from the rotor. The
-comparison error E = S − D contains the model error and three uncertainties: of the numerical solution (u_num), of the inputs
-(u_input), and of the data (u_D). With u_val² = u_num² + u_input² + u_D², the model error is visible where |E| exceeds
+A measurement does not confirm or contradict a solver; it shows how far the *model* is from the rotor. The comparison error
+E = S − D contains the model error and three uncertainties: of the numerical solution (u_num), of the inputs (u_input), and of
+the data (u_D). With u_val² = u_num² + u_input² + u_D², the model error is visible where |E| exceeds
 {COVERAGE:g} u_val (ASME V&V 20-2009, sec. 1-5). All values are in Hz."""
 
 _SANDIA = f"""## The Sandia 34 m vertical-axis test bed
 
-Two curved blades and four struts on a tower. The model was written from the published section data before the measured
-frequencies were looked at, and has not been adjusted since.
+The test bed has two curved blades and four struts on a tower. The model was written from the published section data before
+the measured frequencies were looked at, and has not been adjusted since.
 
 Source: {sandia34.data()["citation"]}; data {comparison.data()["provenance"]}."""
 
@@ -111,8 +111,8 @@ _ASSUMED = sandia34.data()["uncertainty"]
 _MODEL = f"""### What the model assumes
 
 - The guy wires are rigid: the tower top is free only in yaw. The frequencies of the tower modes are therefore too high.
-- The uncertainty of the inputs is not published. Assumed, as one standard uncertainty:
-  {100 * _ASSUMED["stiffness"]:g} % of all stiffness, {100 * _ASSUMED["mass"]:g} % of all mass.
+- The uncertainty of the inputs is not published. The assumed standard uncertainties are
+  {100 * _ASSUMED["stiffness"]:g} % of all stiffness and {100 * _ASSUMED["mass"]:g} % of all mass.
 - The mass matrices of the source place the mass centre outside the profile, across the chord. Stiffness and mass are those of
   one material, so the model has the mass centre at the tension centre. The change to either reading of the printed number is
   part of u_input.
