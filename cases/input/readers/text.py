@@ -27,7 +27,7 @@ MAX_LINES = 250_000
 
 _NUMBER = re.compile(r"[+-]?(\d+\.?\d*|\.\d+)([eEdD][+-]?\d+)?")
 _NO_NUMBER = re.compile(r"[+-]?(nan|inf(inity)?)(\(\w*\))?", re.IGNORECASE)
-_KEYED = re.compile(r"""\s*("[^"]*"|'[^']*'|[^\s,]+)[\s,]+([A-Za-z]\w*)(?:\((\d+)\))?""")
+_KEYED = re.compile(r"""\s*(?!-{2}|={2})("[^"]*"|'[^']*'|[^\s,]+)[\s,]+([A-Za-z]\w*)(?:\((\d+)\))?""")
 
 
 @dataclass(frozen=True)
@@ -198,7 +198,10 @@ def fractions(sections: Table, name: str) -> Array:
 
 
 def keys(text: Text) -> dict[str, tuple[int, str]]:
-    """Values of lines ``value name …``: lower-case name → (line, value); ``BldFile(1)`` is ``bldfile1``."""
+    """Values of lines ``value name …``: lower-case name → (line, value); ``BldFile(1)`` is ``bldfile1``.
+
+    Headings such as ``---- FURLING ----`` have no value.
+    """
     out: dict[str, tuple[int, str]] = {}
     for k, line in enumerate(text.lines):
         match = _KEYED.match(line)

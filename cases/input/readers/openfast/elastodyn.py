@@ -192,6 +192,8 @@ def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) ->
     )
     files = (text.path,) if main is None else (text.path, main)
     notes = _notes(factors, main, mounted, columns)
+    if main is not None:
+        notes += elastodyn_unused.other_blades(load(main), "BldFile")
     if used_offsets:
         largest = ", ".join(f"{name} {max(offset_columns[name], key=abs):g} m" for name in used_offsets)
         notes += (

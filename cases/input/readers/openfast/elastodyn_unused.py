@@ -4,7 +4,7 @@ import math
 from collections.abc import Iterable
 
 from ..source import Unused, unused
-from ..text import Table, Text, flag, keys, number
+from ..text import Table, Text, flag, keys, number, number_or
 from .fast7_offsets import COLUMNS as OFFSETS
 from .mode_shapes import BLADE, Names
 
@@ -92,6 +92,18 @@ def of_main(text: Text) -> tuple[Unused, ...]:
         for name, unit in TEETER.items():
             out += unused(name, _values(text, (name,)), unit, text.path, "the teeter hinge is treated as clamped")
     return tuple(out)
+
+
+def other_blades(text: Text, name: str, count: int = 3) -> tuple[str, ...]:
+    """A note if the files of the blades, of which there are ``NumBl`` or ``count``, have different names."""
+    number_of_blades = int(number_or(text, "NumBl", count))
+    entries = keys(text)
+    files = [
+        entries[f"{name}{k}".lower()][1] for k in range(1, number_of_blades + 1) if f"{name}{k}".lower() in entries
+    ]
+    if len(set(files)) < 2:
+        return ()
+    return (f"only the blade of {name}(1) is read; {text.path.name} names other files for other blades",)
 
 
 def _each(text: Text, name: str) -> tuple[float, ...]:

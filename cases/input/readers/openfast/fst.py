@@ -13,7 +13,7 @@ from pathlib import Path
 from ...errors import CaseError
 from ..source import Mount, Reading
 from ..text import Text, integer, keys, load, path_named
-from . import beamdyn, elastodyn
+from . import beamdyn, elastodyn, elastodyn_unused
 
 
 def matches_format(text: Text) -> bool:
@@ -46,7 +46,12 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         if kind == 1
         else beamdyn.read(file_named(text, "BDBldFile1"), replace(mount, main=hub))
     )
-    return replace(blade_reading, source=replace(blade_reading.source, files=(path, *blade_reading.source.files)))
+    source = replace(blade_reading.source, files=(path, *blade_reading.source.files))
+    if kind == 2:
+        main = load(hub)
+        others = elastodyn_unused.other_blades(text, "BDBldFile", integer(main, keys(main), "NumBl"))
+        source = replace(source, notes=(*source.notes, *others))
+    return replace(blade_reading, source=source)
 
 
 def file_named(text: Text, name: str) -> Path:

@@ -6,7 +6,6 @@ the yaw axis, and the hub's that about the shaft. Sources: J. Jonkman, M. Buhl, 
 OpenFAST documentation, *ElastoDyn*.
 """
 
-import os
 from pathlib import Path
 
 import numpy as np
@@ -18,7 +17,7 @@ from ..source import Mount, Source, TurbineReading, Unused, unused
 from ..text import Text, flag, integer, keys, load, number_or, value
 from . import elastodyn_hub as hubs
 from . import elastodyn_tower as tower_reader
-from . import elastodyn_unused, fst
+from . import elastodyn_unused, fst, servodyn
 from .mode_shapes import TOWER
 
 NAME = "OpenFAST turbine"
@@ -29,9 +28,10 @@ Entries = dict[str, tuple[int, str]]
 GROUND = "rigid ground: platform and water are not included"
 FLOATER = f"{GROUND}; a TOML file with the keys openfast and support gives them as 6×6"
 DAMPING = {"DTTorDmp": "N m s/rad", "YawFrctMod": "", "sig_v": "N m s/rad"}
-MODULES = ("CompHydro", "CompSub", "CompMooring", "CompIce", "CompSoil")
-"""Modules of OpenFAST under the tower; 0 if they are not used."""
-UNDAMPED = "modes are undamped"
+MODULES = ("CompHydro", "CompSub", "CompMooring", "CompIce", "CompSoil", "MHK")
+"""Modules of OpenFAST under the tower, and a rotor in water; 0 if they are not used."""
+TOWER_MOTIONS = ("TwFADOF1", "TwFADOF2", "TwSSDOF1", "TwSSDOF2")
+BLADE_MOTIONS = ("FlapDOF1", "FlapDOF2", "EdgeDOF")
 INERTIA = {
     "PtfmMass": "kg",
     **dict.fromkeys(("PtfmRIner", "PtfmPIner", "PtfmYIner", "PtfmXYIner", "PtfmYZIner", "PtfmXZIner"), "kg m²"),
@@ -72,7 +72,8 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
     blades = integer(main, entries, "NumBl")
     hinge, undersling, hinge_note = hubs.teeter(main, entries) if blades == 2 else (None, 0.0, ())
     tower, tower_notes = tower_reader.beam(tower_text, tower_reader.tower_height(main))
-    yaw, yaw_note, servo = _yaw(primary, main, entries)
+    servo = servodyn.used(primary)
+    yaw, yaw_note = servodyn.yaw(primary, main, servo)
     stiffness = value(main, entries, "DTTorSpr") if flag(main, "DrTrDOF") else np.inf
     free = flag(main, "GenDOF")
     drivetrain = Drivetrain(stiffness, value(main, entries, "GenIner"), value(main, entries, "GBRatio"), free)
@@ -102,17 +103,18 @@ def read(path: Path, mount: Mount | None = None) -> TurbineReading:
         yaw_note,
         *hinge_note,
         NO_TOWER_TORSION,
+        *_locked_motions(main, primary),
         *tower_notes,
         *(note for note in blade.source.notes if "are not part of the blade" not in note),
     )
     unused_values = (
         *_below(primary),
         *_unused(main, entries),
-        *_yaw_damping(servo),
+        *servodyn.not_used(servo, np.isfinite(yaw)),
         *elastodyn_unused.of_shapes(tower_text, TOWER),
         *hubs.without_hinge(blade.source.unused, hinge),
     )
-    files = (*blade.source.files, tower_text.path, *servo)
+    files = (*blade.source.files, tower_text.path, *([servo.path] if servo else []))
     speed = number_or(main, "RotSpeed", 0.0) * np.pi / 30.0
     return TurbineReading(turbine, Source(NAME, files, AXES, notes, unused_values), float(speed))
 
@@ -133,19 +135,15 @@ def _nacelle(main: Text, entries: Entries) -> np.ndarray:
     return out
 
 
-def _yaw(primary: Text, main: Text, entries: Entries) -> tuple[float, str, tuple[Path, ...]]:
-    """Stiffness of the yaw bearing, N m/rad, a note on it, and the file that states it."""
-    if not flag(main, "YawDOF"):
-        return np.inf, "yaw bearing locked (YawDOF is False)", ()
-    servo = keys(primary).get("servofile")
-    path = primary.path.parent / servo[1].replace("\\", "/") if servo else None
-    if path is None or not os.path.isfile(path):
-        return np.inf, "yaw bearing locked: its spring is in ServoDyn's file, which is missing", ()
-    text = load(path)
-    stiffness = number_or(text, "YawSpr", 0.0)
-    if stiffness <= 0:
-        return np.inf, f"yaw bearing locked: YawSpr in {path.name} is not positive", ()
-    return stiffness, f"yaw spring {stiffness:g} N m/rad (YawSpr in {path.name})", (path,)
+def _locked_motions(main: Text, primary: Text) -> tuple[str, ...]:
+    """Assumed modes that the deck locks; BeamDyn's blades have none."""
+    names = (*TOWER_MOTIONS, *(BLADE_MOTIONS if number_or(primary, "CompElast", 1.0) == 1 else ()))
+    locked = [name for name in names if name.lower() in keys(main) and not flag(main, name)]
+    if not locked:
+        return ()
+    return (
+        f"not used: False of {', '.join(locked)} ({main.path.name}): tower and blades move in all their modes here",
+    )
 
 
 def _below(primary: Text) -> tuple[Unused, ...]:
@@ -154,17 +152,11 @@ def _below(primary: Text) -> tuple[Unused, ...]:
     return unused(", ".join(active), [number_or(primary, name, 0.0) for name in active], "", primary.path, FLOATER)
 
 
-def _yaw_damping(servo: tuple[Path, ...]) -> tuple[Unused, ...]:
-    """The damping of the yaw bearing in ServoDyn's file."""
-    of = [(path, number_or(load(path), "YawDamp", 0.0)) for path in servo]
-    return tuple(u for path, damping in of for u in unused("YawDamp", [damping], "N m s/rad", path, UNDAMPED))
-
-
 def _unused(main: Text, entries: Entries) -> tuple[Unused, ...]:
     """Non-zero quantities of the main file that the turbine does not use."""
     out: list[Unused] = []
     for name, unit in DAMPING.items():
-        out += unused(name, [number_or(main, name, 0.0)], unit, main.path, UNDAMPED)
+        out += unused(name, [number_or(main, name, 0.0)], unit, main.path, servodyn.UNDAMPED)
     free = [name for name in PLATFORM if flag(main, name)]
     if free:
         out += unused(", ".join(free), [1.0] * len(free), "", main.path, FLOATER)

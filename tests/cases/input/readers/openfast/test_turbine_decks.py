@@ -257,3 +257,38 @@ def test_the_rotor_is_carried_by_the_tower(tmp_path: Path) -> None:
     tower = replace(read.tower, tip_mass=np.ascontiguousarray(tip))
     exact = solve.modes(tower, 0.0, count=2, gravity=np.array([-9.81, 0.0, 0.0])).frequencies
     np.testing.assert_allclose(turbine_modes(full_machine, 0.0, 2).frequencies, exact, rtol=1e-4)
+
+
+def notes_of(path: Path) -> str:
+    source = turbine.read(path).source
+    return "\n".join([*source.notes, *map(str, source.unused)])
+
+
+def test_what_changes_the_model_and_is_not_used_is_stated(tmp_path: Path) -> None:
+    path, main = deck(tmp_path), tmp_path / "main.dat"
+    before = notes_of(path)
+    for word in ("furling", "MHK", "TwSSDOF1", "BldFile"):
+        assert word not in before
+    with main.open("a") as file:
+        file.write('---- FURLING ----\nTrue Furling\nFalse TwSSDOF1\nTrue TwFADOF1\n"other.dat" BldFile(2)\n')
+    with path.open("a") as file:
+        file.write("1 MHK\n")
+    after = notes_of(path)
+    assert "furling is not included" in after
+    assert "not used: MHK" in after
+    assert "False of TwSSDOF1 (main.dat)" in after
+    assert "only the blade of BldFile(1) is read; main.dat names other files" in after
+
+
+def test_the_yaw_spring_and_tuned_masses_of_servodyn(tmp_path: Path) -> None:
+    path = deck(tmp_path, yaw=True)
+    servo = tmp_path / "servo.dat"
+    assert np.isfinite(turbine.read(path).turbine.yaw)
+    with servo.open("a") as file:
+        file.write("2 NumTStC\nTrue CompNTMD\n")
+    assert "not used: NumTStC, CompNTMD (largest 2, servo.dat): tuned masses" in notes_of(path)
+    with path.open("a") as file:
+        file.write("0 CompServo\n")
+    assert np.isinf(turbine.read(path).turbine.yaw)
+    assert "with CompServo = 0, OpenFAST has no yaw spring" in notes_of(path)
+    assert "NumTStC" not in notes_of(path)
