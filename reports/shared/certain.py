@@ -8,8 +8,8 @@ from ...core.element.measures import LARGE_STRAIN
 from .units import Units
 
 NUMERICAL = (
-    "± relative is numerical: mesh and rounding. How a blade file is read (axes, interpolation, data that it lacks) can change "
-    "frequencies by orders of magnitude more."
+    "± relative is the numerical uncertainty (mesh and rounding). The interpretation of a blade file (axes, interpolation, "
+    "missing data) can change frequencies by orders of magnitude more."
 )
 """The meaning of the uncertainty of a frequency, for a blade from a file."""
 
