@@ -7,7 +7,7 @@ at z = 0 where the half-chord line may be offset from the blade's axis, with Aki
 
 import os
 import re
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -99,7 +99,7 @@ def body_named(htc: Text, commands: Body, beginning: str) -> Body:
     )
 
 
-def blocks(commands: Body, *kinds: str) -> list[tuple[str, Body]]:
+def blocks(commands: Sequence[Command], *kinds: str) -> list[tuple[str, Body]]:
     """Kind and commands of each ``begin kind … end kind``, for these kinds."""
     out: list[tuple[str, Body]] = []
     inside = ""
@@ -115,7 +115,7 @@ def blocks(commands: Body, *kinds: str) -> list[tuple[str, Body]]:
     return out
 
 
-def main_bodies(commands: Body) -> dict[str, Body]:
+def main_bodies(commands: Sequence[Command]) -> dict[str, Body]:
     """The commands of each main_body by its name in lower case; those of a copy are the commands of what it copies."""
     out: dict[str, Body] = {}
     for _, body in blocks(commands, "main_body"):
