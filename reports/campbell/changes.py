@@ -5,8 +5,8 @@ from math import isnan
 
 from ...cases.campbell.changes import ModeDifference
 from ..shared.certain import certain
+from ..shared.sheets import Sheet
 from ..shared.units import Units
-from .tables import Sheet
 
 
 def sheet(differences: Sequence[ModeDifference], against: str, units: Units) -> Sheet:

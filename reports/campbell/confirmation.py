@@ -5,8 +5,8 @@ from math import isfinite
 
 from ...cases.campbell.confirmation import Confirmed
 from ...cases.campbell.diagram import Campbell
+from ..shared.sheets import TOO_NEAR, Sheet
 from ..shared.units import Units
-from .tables import TOO_NEAR, Sheet
 
 TITLE = "Independent confirmation"
 

@@ -9,11 +9,11 @@ from matplotlib.figure import Figure
 from ...cases.campbell.machine import MachineDiagram, ModeLine
 from ...cases.input import atomic
 from ..shared.certain import certain, relative
+from ..shared.sheets import TOO_NEAR, Sheet, markdown
 from ..shared.style import COLOURS, MUTED, WIDTH, plot_style, save, title
 from ..shared.units import Units
 from . import cover
 from .cover import InputOrigin
-from .tables import TOO_NEAR, Sheet, markdown
 
 PAGE = "campbell.md"
 

@@ -10,11 +10,11 @@ from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...cases.plan.user_results import UserResults
 from ...cases.writers.elastodyn_shapes import as_it_is, polynomials
+from ..shared.sheets import Sheet, markdown
 from ..shared.style import save
 from ..shared.units import Units
-from . import cover, csv_tables, encounters, shapes, span
+from . import cover, csv_tables, encounters, shapes, span, tables
 from . import figure as figures
-from . import tables as tables
 from .confirmation import TITLE as CONFIRMATION
 from .cover import UNKNOWN, InputOrigin
 
@@ -29,7 +29,7 @@ def write(
     units: Units,
     command: str,
     origin: InputOrigin = UNKNOWN,
-    extra: Sequence[tables.Sheet] = (),
+    extra: Sequence[Sheet] = (),
     user_results: Sequence[UserResults] = (),
 ) -> tuple[Path, ...]:
     """Write figures (SVG and PNG), CSV tables, and a Markdown page with all of them; return the paths.
@@ -74,9 +74,7 @@ def shapes_at(diagram: Campbell) -> int:
     return int(requested[np.abs(omega[requested] - target).argmin()])
 
 
-def _page(
-    diagram: Campbell, k: int, units: Units, command: str, origin: InputOrigin, extra: Sequence[tables.Sheet]
-) -> str:
+def _page(diagram: Campbell, k: int, units: Units, command: str, origin: InputOrigin, extra: Sequence[Sheet]) -> str:
     omega = float(diagram.tracks.omega[k])
     parts = [
         f"# Campbell diagram of {diagram.blade.name}\n",
@@ -84,7 +82,7 @@ def _page(
         *[f"{line}.\n" for line in tables.notes(diagram, units)],
         cover.cover(origin),
         "![Natural frequencies versus rotor speed](campbell.svg)\n",
-        *[tables.markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],
+        *[markdown(sheet) for sheet in (*tables.sheets(diagram, units), *extra)],
         *([] if any(sheet.title == CONFIRMATION for sheet in extra) else [NOT_VERIFIED]),
         *(["![Modes that come close](encounters.svg)\n"] if diagram.encounters else []),
         f"## Mode shapes, {units.at(omega)}\n\n![Mode shapes](shapes.svg)\n",
@@ -103,4 +101,4 @@ def _elastodyn(diagram: Campbell, k: int, units: Units) -> str:
     except CaseError as error:
         return f"## ElastoDyn mode shapes\n\nNone: {error}.\n"
     blade_shapes = as_it_is(diagram.blade, diagram.tracks.solved[k])
-    return tables.markdown(shapes.coefficients(fitted, blade_shapes, units, omega))
+    return markdown(shapes.coefficients(fitted, blade_shapes, units, omega))

@@ -17,10 +17,10 @@ from ...cases.writers.elastodyn_shapes import ELASTODYN_NAMES, POWERS, Polynomia
 from ...core.modes import STATIONS
 from ...core.participation import describe_fractions, gyration, in_blade_axes
 from ..shared.certain import certain
+from ..shared.sheets import Sheet
 from ..shared.style import FAINT, MUTED, WIDTH, key, plot_style, spread, title
 from ..shared.units import Units
 from .marks import DASHES, FAMILY_COLOURS
-from .tables import Sheet
 
 Complex = NDArray[np.complex128]
 

@@ -31,12 +31,12 @@ from ...campbell import changes as changes_table
 from ...campbell import confirmation as confirmation_table
 from ...campbell import interactive, page, tables
 from ...campbell.cover import InputOrigin
-from ...campbell.tables import Sheet
 from ...documents import html as as_html
 from ...documents import pdf as as_pdf
 from ...shared import not_used
 from ...shared.console import Display, output
 from ...shared.paths import file_name
+from ...shared.sheets import TOO_NEAR, Sheet, terminal
 from ...shared.units import RPM, Units
 from ..arguments import Accuracy, Changes, Elements, NumberOfModes, Workers, typed
 from ..errors import UsageError
@@ -323,10 +323,10 @@ def _show(
 ) -> None:
     console = output()
     line = tables.verdict(diagram, units)
-    console.print(line, style="bold red" if line.startswith(tables.TOO_NEAR) else "bold", markup=False)
+    console.print(line, style="bold red" if line.startswith(TOO_NEAR) else "bold", markup=False)
     console.print()
     for sheet in (*tables.sheets(diagram, units), *extra):
-        console.print(tables.terminal(sheet, console.width))
+        console.print(terminal(sheet, console.width))
         console.print()
     for line in subject.about:
         console.print(line, style="dim", markup=False)

@@ -10,11 +10,11 @@ from ....cases.input.errors import CaseError
 from ....cases.input.machines import turbines as reader
 from ....cases.input.readers.source import Mount
 from ....cases.input.writing import writable
-from ...campbell import interactive, moving_machine, tables
+from ...campbell import interactive, moving_machine
 from ...campbell import machine as pages
 from ...campbell.cover import InputOrigin
 from ...documents import html as as_html
-from ...shared import not_used
+from ...shared import not_used, sheets
 from ...shared.console import output
 from ...shared.units import RPM, Units
 from ..arguments import typed
@@ -77,7 +77,7 @@ def run(
     console = output()
     console.print(facts[0], style="bold", markup=False, soft_wrap=True)
     for sheet in pages.sheets(diagram, units):
-        console.print(tables.terminal(sheet, console.width))
+        console.print(sheets.terminal(sheet, console.width))
         console.print()
     for line in facts[1:]:
         console.print(line, style="dim", markup=False)

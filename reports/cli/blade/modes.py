@@ -14,8 +14,7 @@ from ....cases.campbell.tracked import TrackedMode, tracked
 from ....cases.input import library
 from ....cases.input.changes import parse
 from ...campbell import changes as changes_table
-from ...campbell import tables
-from ...shared import not_used
+from ...shared import not_used, sheets
 from ...shared.certain import NUMERICAL, remarks
 from ...shared.console import output
 from ...shared.statuses import PASSED
@@ -133,7 +132,7 @@ def modes(
             if baseline:
                 compared = blade_changes(blade, baseline.blade, at, modes, elements)
                 console.print(
-                    tables.terminal(changes_table.sheet(compared, baseline.blade.name, display_units), console.width)
+                    sheets.terminal(changes_table.sheet(compared, baseline.blade.name, display_units), console.width)
                 )
     if json:
         print(msgspec.json.format(msgspec.json.encode(rows)).decode())

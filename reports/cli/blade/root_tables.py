@@ -5,8 +5,8 @@ from collections.abc import Sequence
 import numpy as np
 
 from ....core.root_loads import RootLoads
-from ...campbell.tables import Sheet
 from ...shared.certain import certain
+from ...shared.sheets import Sheet
 from ...shared.units import Units
 
 HEAD = ("speed", *(f"F{axis},\u00a0N" for axis in "xyz"), *(f"M{axis},\u00a0N\u00a0m" for axis in "xyz"))

@@ -19,10 +19,10 @@ from ....cases.input.writing import writable
 from ....core.blade import Blade
 from ....core.root_loads import RootLoads, root_loads
 from ...campbell.properties import COLUMNS, MORE, PROPERTIES, ROWS, cell, facts, picked, rows
-from ...campbell.tables import terminal
 from ...shared import not_used
 from ...shared.console import output
 from ...shared.paths import file_name
+from ...shared.sheets import terminal
 from ...shared.units import Units
 from ..errors import UsageError
 from ..mounting import Mounting

@@ -17,10 +17,9 @@ from ....cases.study.run import run
 from ....cases.study.schema import Study
 from ....cases.study.schema import read as read_study
 from ....cases.study.statistics import Outcome, outcome, spreads
-from ...campbell import tables
-from ...campbell.tables import Sheet
 from ...shared import not_used
 from ...shared.console import Counter, output
+from ...shared.sheets import Sheet, terminal
 from ...shared.statuses import FAILED, INCOMPLETE, INTERRUPTED, PASSED
 from ...shared.units import RAD_S, RPM
 from ..arguments import Workers, cluster_workers
@@ -83,7 +82,7 @@ def command(
         result = outcome(read(path))
         if summary:
             console = output()
-            console.print(tables.terminal(_sheet(path, request), console.width))
+            console.print(terminal(_sheet(path, request), console.width))
     output().print(f"{out}: {_said(result, head)}", markup=False, soft_wrap=True)
     return FAILED if result.missing else PASSED
 

@@ -8,11 +8,10 @@ import numpy as np
 from ....cases.input.errors import NO_STATE, CaseError
 from ....cases.input.machines import towers
 from ....core.turbine.tower import TowerModes, tower_modes
-from ...campbell import tables
-from ...campbell.tables import Sheet
 from ...shared import not_used
 from ...shared.certain import certain, relative
 from ...shared.console import output
+from ...shared.sheets import Sheet, terminal
 from ..errors import UsageError
 
 
@@ -46,7 +45,7 @@ def run(name: str, modes: int, json: bool, **given: bool) -> None:
         print(msgspec.json.format(msgspec.json.encode(_rows(tower.beam.name, solved))).decode())
         return
     console = output()
-    console.print(tables.terminal(_sheet(tower.beam.name, solved), console.width))
+    console.print(terminal(_sheet(tower.beam.name, solved), console.width))
     for line in source.about:
         console.print(line, style="dim", markup=False)
     not_used.show(source.unused, console)

@@ -26,7 +26,8 @@ from southwell.core.solve import mesh_modes, modes
 from southwell.reports.campbell import csv_tables, encounters
 from southwell.reports.campbell.figure import draw
 from southwell.reports.campbell.marks import blend
-from southwell.reports.campbell.tables import markdown, sheets, verdict
+from southwell.reports.campbell.tables import sheets, verdict
+from southwell.reports.shared.sheets import markdown
 from southwell.reports.shared.style import save
 from southwell.reports.shared.units import RAD_S, RPM
 

@@ -16,9 +16,8 @@ from southwell.cases.judge.results import Control
 from southwell.cases.store import results_file
 from southwell.core.blade import uniform_blade
 from southwell.references.protocol import registry
-from southwell.reports.campbell import tables
 from southwell.reports.cli.blade import show
-from southwell.reports.shared import table_columns
+from southwell.reports.shared import sheets, table_columns
 from southwell.reports.shared.units import RPM
 from southwell.reports.verification import terminal
 
@@ -157,7 +156,7 @@ def test_a_table_is_continued_with_every_column_that_names_a_row() -> None:
     head = ("blade", "speed", "mode", "name", "samples", "mean, Hz", "std. deviation", "5 %", "95 %")
     rows = tuple(("a-long-name", f"{30 * k} rpm", "1", "flapwise 1", "8", *["1.234567"] * 4) for k in range(3))
     console = Console(width=60, file=StringIO(), highlight=False)
-    console.print(tables.terminal(tables.Sheet("Frequencies over the samples", head, rows, keys=4), 60))
+    console.print(sheets.terminal(sheets.Sheet("Frequencies over the samples", head, rows, keys=4), 60))
     output = console.file.getvalue()  # type: ignore[attr-defined]
     assert [output.count(f" {30 * k} rpm") for k in range(3)] == 3 * [output.count("blade")]
     assert output.count("blade") > 1

@@ -6,8 +6,8 @@ from io import StringIO
 import pytest
 from rich.console import Console
 
-from southwell.reports.campbell.tables import Sheet, terminal
 from southwell.reports.shared.console import _Output
+from southwell.reports.shared.sheets import Sheet, terminal
 
 HEAD = ("mode", "kinetic energy", "Hz at rest", "Hz at 15 rpm", "± relative", "change", "residual")
 ROWS = tuple(
