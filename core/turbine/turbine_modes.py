@@ -161,11 +161,16 @@ def _turned(a: Assembled, label: str, x: Complex, motions: NDArray[np.intp]) -> 
         return f"{label} collective", 0.0
     if names[-1] == "differential" and parts[-1] >= 0.5 * parts.sum():
         return f"{label} differential", 0.0
-    pairs = np.stack([a.blades[1, motions], a.blades[2, motions]], axis=-1)
+    order = 1 + int(np.array([parts[m : m + 2].sum() for m in range(1, len(parts) - 1, 2)]).argmax())
+    pairs = np.stack([a.blades[2 * order - 1, motions], a.blades[2 * order, motions]], axis=-1)
     turning = whirl(x, pairs, a.omega, energy)
     if a.omega and turning.name != "neither":
-        return f"{label} {turning.name} whirl", turning.direction
-    return f"{label} {'tilt' if parts[1] >= parts[2] else 'yaw'}", turning.direction
+        kind = f"{turning.name} whirl"
+    elif order == 1:
+        kind = "tilt" if parts[1] >= parts[2] else "yaw"
+    else:
+        kind = "standing wave"
+    return f"{label} {kind}{f' of {order} diameters' if order > 1 else ''}", turning.direction
 
 
 def _labels(machine: Machine, a: Assembled) -> tuple[tuple[str, ...], dict[str, NDArray[np.intp]]]:

@@ -20,7 +20,10 @@ PAGE = "campbell.md"
 UNSTABLE = 1e-5
 """Growth rate, as a fraction of the frequency, above which a mode is unstable."""
 
-FRAME = "Frequencies are in the ground's frame: a blade sees a backward whirl 1P higher and a forward whirl 1P lower."
+FRAME = (
+    "Frequencies are in the ground's frame: a blade sees a backward whirl 1P higher and a forward whirl 1P lower (of m "
+    "diameters: mP)."
+)
 
 OF_TWO_BLADES = (
     "Frequencies of the tower are in the ground's frame, those of the two blades in the rotor's: each side sees a mode of the "

@@ -77,6 +77,19 @@ def test_four_blades_have_a_differential_motion() -> None:
     assert any(name.endswith("differential") for name in names)
 
 
+def test_five_blades_have_whirls_of_two_diameters() -> None:
+    """They do not move the hub: a clamped blade's frequency, 2Ω higher or lower in the ground's frame."""
+    turbine = small(blades=5)
+    modes = turbine_modes(machine(turbine, SMALL), OMEGA, 16)
+    by_name = dict(zip(modes.names, modes.frequencies, strict=True))
+    blade = solve.modes(turbine.blade, OMEGA, elements=2, count=1).frequencies[0]
+    assert by_name["1st flap forward whirl of 2 diameters"] == pytest.approx(blade + 2.0 * OMEGA, rel=1e-5)
+    assert by_name["1st flap backward whirl of 2 diameters"] == pytest.approx(blade - 2.0 * OMEGA, rel=1e-5)
+    assert {"1st flap backward whirl", "1st flap forward whirl", "1st flap collective"} <= set(modes.names)
+    at_rest = turbine_modes(machine(turbine, SMALL), 0.0, 16).names
+    assert at_rest.count("1st flap standing wave of 2 diameters") == 2
+
+
 def test_names_and_tracking() -> None:
     full_machine = machine(small(), SMALL)
     slow, fast = turbine_modes(full_machine, OMEGA, 8), turbine_modes(full_machine, 1.02 * OMEGA, 8)
