@@ -109,13 +109,13 @@ def groups(frequencies: Array, gap: float = DEGENERATE) -> list[list[int]]:
     return out
 
 
-def aligned(modes: Modes, weight: Array, gap: float = DOUBLE) -> Modes:
+def aligned(modes: Modes, weight: Array) -> Modes:
     """The same modes, with shapes of equal frequency combined so that each moves along one axis where possible.
 
     The basis of a degenerate eigenspace is arbitrary; the modes that diagonalise the flapwise mass can be named.
     """
     shapes = modes.shapes.copy()
-    for group in groups(modes.frequencies, gap):
+    for group in groups(modes.frequencies, DOUBLE):
         if len(group) > 1:
             flap = np.einsum("ms,s,ks->mk", shapes[group, :, 2].conj(), weight[:, 2, 2], shapes[group, :, 2])
             mass = _products(shapes[group], _momenta(shapes[group], weight))

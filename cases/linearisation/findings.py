@@ -30,10 +30,10 @@ class Finding:
         return f"{self.name}: {self.observation}: {self.remedy}"
 
 
-def listed(items: list[str], limit: int = 3) -> str:
-    """The first items, and how many there are more."""
-    remainder = f" and {len(items) - limit} more" if len(items) > limit else ""
-    return ", ".join(items[:limit]) + remainder
+def listed(items: list[str]) -> str:
+    """The first three items, and how many there are more."""
+    remainder = f" and {len(items) - 3} more" if len(items) > 3 else ""
+    return ", ".join(items[:3]) + remainder
 
 
 def count(n: int, name: str, several: str = "") -> str:

@@ -63,8 +63,8 @@ class Polynomial:
         return np.power.outer(x, POWERS) @ self.coefficients
 
 
-def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polynomial:
-    """Least-squares fit over ``x`` with ``φ(1) = 1`` exactly: ``φ − x⁶ = Σ c_k (x^k − x⁶)``, k = 2 … 5.
+def fit(mode: str, frequency: float, shape: Array) -> Polynomial:
+    """Least-squares fit over ``STATIONS`` (x) with ``φ(1) = 1`` exactly: ``φ − x⁶ = Σ c_k (x^k − x⁶)``, k = 2 … 5.
 
     Raises:
         CaseError: if the tip does not move.
@@ -72,11 +72,11 @@ def fit(mode: str, frequency: float, shape: Array, x: Array = STATIONS) -> Polyn
     if abs(shape[-1]) < 1e-6 * np.abs(shape).max(initial=0.0) or not shape[-1]:
         raise CaseError(f"{mode}: its tip does not move, so no polynomial that is 1 at the tip describes it")
     scaled = shape / shape[-1]
-    basis = np.stack([x**k - x**6 for k in POWERS[:-1]], axis=1)
-    free, *_ = np.linalg.lstsq(basis, scaled - x**6, rcond=None)
+    basis = np.stack([STATIONS**k - STATIONS**6 for k in POWERS[:-1]], axis=1)
+    free, *_ = np.linalg.lstsq(basis, scaled - STATIONS**6, rcond=None)
     free = np.round(free, DIGITS)
     coefficients = np.append(free, round(1.0 - free.sum(), DIGITS))
-    deviation = np.power.outer(x, POWERS) @ coefficients - scaled
+    deviation = np.power.outer(STATIONS, POWERS) @ coefficients - scaled
     return Polynomial(
         mode=mode,
         frequency=frequency,

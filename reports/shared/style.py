@@ -170,14 +170,14 @@ def spread(targets: Sequence[float], gap: float) -> list[float]:
     return out
 
 
-def label_ends(axes: "Axes", labels: Sequence[tuple[float, str] | tuple[float, str, str]], size: float = 8.5) -> None:
+def label_ends(axes: "Axes", labels: Sequence[tuple[float, str] | tuple[float, str, str]]) -> None:
     """Draw labels at the right edge of ``axes``, each as near to its height (data) as its neighbours allow.
 
     Args:
         axes: axes whose limits and scales are final.
         labels: height, text, and optional colour.
-        size: font size, points.
     """
+    size = 8.5
     figure = axes.figure.figure
     assert figure is not None
     points = axes.get_position().height * figure.get_figheight() * 72
