@@ -184,7 +184,7 @@ def api() -> Pages:
     for floor in FLOORS:
         package = import_module(f"{root}.{floor}")
         inside = [name for _, name, is_package in walk_packages(package.__path__, f"{package.__name__}.") if is_package]
-        rows = []
+        rows: list[dict[str, str]] = []
         for name in (package.__name__, *inside):
             text, modules = _summary(name), _modules(name)
             if modules:
