@@ -155,8 +155,7 @@ def verdict_counts(run: Run, case: str) -> list[dict[str, Any]]:
         parts = (summary.column(worst), worst.name, summary.units(run, case).at(worst.omega)) if worst else ()
         where = ", ".join(part for part in parts if part)
         target = f"; target {summary.allowed(worst.target)}" if worst and verdict != "known difference" else ""
-        if n:
-            out.append({"verdict": WORST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{target}"})
+        out.append({"verdict": WORST_FIRST.index(verdict), "count": n, "text": text, "where": f"{where}{target}"})
     return out
 
 
@@ -208,7 +207,7 @@ def codes(run: Run) -> list[dict[str, Any]]:
                 "title": _known(name).get("title", ""),
                 "version": run.versions.get(name, ""),
                 "shares": shared(run, name),
-                "counts": [[WORST_FIRST.index(v), n] for v, n in summary.counts(cells).items() if n],
+                "counts": [[WORST_FIRST.index(v), n] for v, n in summary.counts(cells).items()],
                 "worst": _placed(worst),
                 "known": _placed(explained),
             }

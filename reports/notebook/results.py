@@ -240,7 +240,7 @@ class VerifyResult:
         return axes
 
     def __repr__(self) -> str:
-        counts = ", ".join(f"{n} {v}" for v, n in summary.counts(self.run.cells).items() if n)
+        counts = ", ".join(f"{n} {v}" for v, n in summary.counts(self.run.cells).items())
         return f"<verification of {', '.join(summary.cases(self.run))}: {counts}>"
 
     def _repr_html_(self) -> str:

@@ -5,7 +5,6 @@ Pure functions of a run, shared by terminal, Markdown and figures, so that all r
 
 from collections import Counter
 from collections.abc import Callable, Iterable
-from typing import get_args
 
 from ...cases.judge.results import Cell, Run, Setting, Verdict
 from ...cases.judge.verdict import unsigned
@@ -83,8 +82,7 @@ def status(run: Run) -> int:
 
 def worst_verdict(cells: Iterable[Cell]) -> Verdict:
     """The worst verdict of the cells."""
-    verdicts = {c.verdict for c in cells}
-    return next(v for v in WORST_FIRST if v in verdicts)
+    return min((c.verdict for c in cells), key=WORST_FIRST.index)
 
 
 def size(cell: Cell) -> float | None:
@@ -110,11 +108,15 @@ def worst(cells: Iterable[Cell]) -> Cell | None:
     return largest(c for c in cells if c.verdict == grave)
 
 
-def counts(cells: Iterable[Cell]) -> dict[Verdict, int]:
-    """Number of cells by verdict; all verdicts, worst first."""
-    tally = Counter(c.verdict for c in cells)
-    assert set(tally) <= set(get_args(Verdict))
-    return {v: tally[v] for v in WORST_FIRST}
+def counts(cells: Iterable[Cell]) -> Counter[Verdict]:
+    """Number of cells by verdict, the worst first."""
+    by_verdict = Counter(c.verdict for c in cells)
+    return Counter({v: by_verdict[v] for v in sorted(by_verdict, key=WORST_FIRST.index)})
+
+
+def tally(cells: Iterable[Cell]) -> str:
+    """Number of cells by verdict, with the verdicts' signs."""
+    return ", ".join(f"{n} {SYMBOL[verdict]}" for verdict, n in counts(cells).items())
 
 
 def setting(run: Run, case: str) -> Setting | None:

@@ -34,11 +34,8 @@ def verdicts(cells: Sequence[Cell]) -> str:
     """The number of cells by verdict, with the largest difference of each verdict."""
     parts = []
     for verdict, n in summary.counts(cells).items():
-        if n:
-            largest = summary.largest(c for c in cells if c.verdict == verdict)
-            parts.append(
-                f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(largest)}' if largest else ''}"
-            )
+        largest = summary.largest(c for c in cells if c.verdict == verdict)
+        parts.append(f"{n} {SYMBOL[verdict]} {verdict}{f', up to {summary.plus_minus(largest)}' if largest else ''}")
     return "; ".join(parts)
 
 

@@ -56,7 +56,7 @@ def index(run: Run, codes: Sequence[Description]) -> str:
                 "code": f"[{plain(code.title)}]({code.name}.md)",
                 "version": plain(version(run, code)),
                 "shares with Southwell": code.shares,
-                "cells": plain(", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n)),
+                "cells": plain(summary.tally(cells)),
                 "worst difference": f"{SYMBOL[worst.verdict]} {summary.plus_minus(worst)} ({plain(worst.case)})"
                 if worst
                 else "",
@@ -113,11 +113,10 @@ def differences(run: Run, cells: Sequence[Cell]) -> str:
         worst = summary.worst(case_cells)
         where = f"{worst.name}, {summary.units(run, case).at(worst.omega)}" if worst else ""
         reason = worst.reason if worst else "; ".join(dict.fromkeys(c.reason for c in case_cells))
-        tally = ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(case_cells).items() if n)
         rows.append(
             {
                 "blade": plain(case),
-                "cells": plain(tally),
+                "cells": plain(summary.tally(case_cells)),
                 "worst difference": f"{SYMBOL[worst.verdict]} {summary.plus_minus(worst)}" if worst else "",
                 "where": plain(where),
                 "why": plain(reason),

@@ -86,7 +86,7 @@ def _unconfirmed(run: Run) -> list[str]:
 
 def answer(run: Run) -> str:
     """The verdict and the number of cells by verdict."""
-    tally = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items() if n)
+    tally = ", ".join(f"{n} {SYMBOL[v]} {v}" for v, n in summary.counts(run.cells).items())
     return f"{verdict(run)} {len(run.cells)} cell{'s' * (len(run.cells) != 1)}: {tally}."
 
 
@@ -182,7 +182,7 @@ def rows(run: Run) -> list[dict[str, str]]:
             out.append(
                 {
                     "evidence": kind,
-                    "answers": ", ".join(f"{n} {SYMBOL[v]}" for v, n in summary.counts(cells).items() if n),
+                    "answers": summary.tally(cells),
                     "worst, relative to target": _shown(run, farthest(cells) or _measured(cells)),
                 }
             )
