@@ -12,7 +12,7 @@ from scipy.interpolate import CubicSpline
 Array = NDArray[Any]
 Kinks = tuple[float, ...]
 
-SAME = 1e-12
+KINK_TOLERANCE = 1e-12
 """Fraction of the length: arc lengths closer than this to a kink count as the kink."""
 
 
@@ -26,7 +26,7 @@ def at(stations: Array, values: Array, kinks: Kinks, s: Array, *, root_side: boo
         s: (k,) arc lengths, m.
         root_side: evaluate at a kink from its root side instead of its tip side.
     """
-    s = on_kinks(s, kinks, SAME * stations[-1])
+    s = on_kinks(s, kinks, KINK_TOLERANCE * stations[-1])
     piece = np.searchsorted(np.array(kinks), s, side="left" if root_side else "right")
     ends = np.array([stations[0], *kinks, stations[-1]])
     out, rate = (np.empty((len(s), *values.shape[1:]), dtype=values.dtype) for _ in range(2))

@@ -116,7 +116,7 @@ def _motion(modes: Modes, blade: Blade, s: Array, centre: Array) -> tuple[Comple
 
     Pieces between kinks are treated separately; one with fewer than three of the common stations is joined to the previous.
     """
-    at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
+    at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.KINK_TOLERANCE * blade.length)
     ends = [0.0, blade.length]
     for kink in blade.kinks:
         if min(np.sum((at >= ends[-2]) & (at <= kink)), np.sum(at >= kink)) >= 3:

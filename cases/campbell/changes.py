@@ -21,7 +21,7 @@ class ModeDifference:
         omega: rotor speed, rad/s.
         name: family and number within the family in the first blade, ``flapwise 2``.
         frequency: frequency of the first blade, rad/s.
-        other: frequency of the mode of the other blade with the same shape, rad/s; NaN if there is none.
+        partner: frequency of the mode of the other blade with the same shape, rad/s; NaN if there is none.
         uncertainty: of ``relative``, numerical: the sum of both frequencies' relative uncertainties.
         mac: MAC of the two shapes.
         note: why there is no partner, or why it is ambiguous.
@@ -30,15 +30,15 @@ class ModeDifference:
     omega: float
     name: str
     frequency: float
-    other: float
+    partner: float
     uncertainty: float
     mac: float
     note: str = ""
 
     @property
     def relative(self) -> float:
-        """``frequency / other − 1``."""
-        return self.frequency / self.other - 1.0
+        """``frequency / partner − 1``."""
+        return self.frequency / self.partner - 1.0
 
 
 def changes(

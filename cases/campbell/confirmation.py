@@ -22,7 +22,7 @@ class Confirmed:
         uncertainty: relative uncertainty due to discretisation and rounding; infinite if unknown.
         codes: names of the codes that share nothing with core and agree with it within the target.
         difference: largest relative difference among these codes; NaN if there are none.
-        others: codes that share nothing with core and do not agree, each with its verdict.
+        dissenting: codes that share nothing with core and do not agree, each with its verdict.
     """
 
     track: int
@@ -31,7 +31,7 @@ class Confirmed:
     uncertainty: float
     codes: tuple[str, ...]
     difference: float
-    others: tuple[str, ...]
+    dissenting: tuple[str, ...]
 
 
 def speeds(diagram: Campbell) -> tuple[float, ...]:
@@ -46,8 +46,8 @@ def confirmations(diagram: Campbell, run: Run) -> tuple[Confirmed, ...]:
     out = []
     for omega in sorted({c.omega for c in run.cells if c.mode}):
         k = int(np.abs(tracks.omega - omega).argmin())
-        for t in np.flatnonzero(tracks.place[k] >= 0):
-            mode = int(tracks.place[k, t])
+        for t in np.flatnonzero(tracks.mode_index[k] >= 0):
+            mode = int(tracks.mode_index[k, t])
             solved, frequency = tracks.solved[k], float(tracks.frequencies[k, t])
             uncertainty = float(solved.uncertainty[mode]) if len(solved.uncertainty) else np.inf
             cells = [c for c in run.cells if c.omega == omega and c.shares == "nothing" and _is(c, frequency, run)]

@@ -38,7 +38,7 @@ class Encounter:
             ``gap_uncertainty``.
         exchanged: fraction of the shapes exchanged from ``window[0]`` to ``window[1]``, 0 to 1.
         window: speeds between which the modes pass each other, rad/s.
-        whole: whether they have passed each other within the solved speeds.
+        complete: whether they have passed each other within the solved speeds.
         before, after: (2, 4) fractions of kinetic energy of the two (``core.participation``) at the window's ends.
     """
 
@@ -50,7 +50,7 @@ class Encounter:
     uncertainty: float
     exchanged: float
     window: tuple[float, float]
-    whole: bool
+    complete: bool
     before: Array
     after: Array
 
@@ -65,7 +65,7 @@ def encounters(tracks: Tracks, fractions: Array, weight: Array) -> tuple[Encount
     pairs = []
     for i in range(tracks.count):
         for j in range(i + 1, tracks.count):
-            both = np.flatnonzero((tracks.place[:, i] >= 0) & (tracks.place[:, j] >= 0))
+            both = np.flatnonzero((tracks.mode_index[:, i] >= 0) & (tracks.mode_index[:, j] >= 0))
             for run in np.split(both, np.flatnonzero(np.diff(both) > 1) + 1):
                 pairs += _of_pair(tracks, fractions, weight, i, j, run)
     return tuple(sorted(pairs, key=lambda e: (e.omega, e.frequency)))
@@ -77,7 +77,7 @@ def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k:
     x = tracks.omega[k] ** 2
     squares = tracks.frequencies[k][:, [i, j]] ** 2
     d = squares[:, 1] - squares[:, 0]
-    is_above = tracks.place[k, j] > tracks.place[k, i]
+    is_above = tracks.mode_index[k, j] > tracks.mode_index[k, i]
     swaps = np.flatnonzero(is_above[1:] != is_above[:-1])
     within_pair = []
     for a in swaps:
@@ -161,7 +161,7 @@ def _encounter(
     square: float,
     gap: float,
     window: tuple[int, int],
-    whole: bool,
+    complete: bool,
 ) -> Encounter:
     a, b = window
     two = list(pair)
@@ -176,7 +176,7 @@ def _encounter(
         uncertainty=float(tracks.uncertainty[a : b + 1, two].max()),
         exchanged=float(swapped / max(table.sum(), 1e-300)),
         window=(float(tracks.omega[a]), float(tracks.omega[b])),
-        whole=whole,
+        complete=complete,
         before=fractions[a, two],
         after=fractions[b, two],
     )

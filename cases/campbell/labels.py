@@ -47,16 +47,16 @@ class Labels:
 
 def labels(tracks: Tracks, blade: Blade) -> tuple[Labels, Array]:
     """The labels, and the energy fractions (n, t, 4) in the order of ``FAMILIES``; NaN where a track has no mode."""
-    fractions = np.full((*tracks.place.shape, 4), np.nan)
+    fractions = np.full((*tracks.mode_index.shape, 4), np.nan)
     names: dict[int, str] = {}
     kinds: list[tuple[str, ...]] = []
     for k, solved in enumerate(tracks.solved):
-        present = np.flatnonzero(tracks.place[k] >= 0)
+        present = np.flatnonzero(tracks.mode_index[k] >= 0)
         energies = participation(solved, blade)
-        fractions[k, present] = energies[tracks.place[k, present]]
+        fractions[k, present] = energies[tracks.mode_index[k, present]]
         kind, name = families(energies), numbered(families(energies))
-        kinds.append(tuple(kind[p] if p >= 0 else "" for p in tracks.place[k]))
-        names = {int(t): name[tracks.place[k, t]] for t in present} | names
+        kinds.append(tuple(kind[p] if p >= 0 else "" for p in tracks.mode_index[k]))
+        names = {int(t): name[tracks.mode_index[k, t]] for t in present} | names
     return Labels(_distinct([names[t] for t in range(tracks.count)]), tuple(kinds), tracks.omega), fractions
 
 

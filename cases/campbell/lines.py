@@ -26,19 +26,19 @@ class _Minimum:
 
     Attributes:
         square: Ω² there.
-        least: the distance there, negative beyond n per revolution.
+        smallest: the distance there, negative beyond n per revolution.
         curvature: half its second derivative over Ω².
         solved: smallest distance at the three speeds.
         within: the uncertainty of that distance.
-        near: whether one of the three speeds is within ``NEAR``.
+        is_near: whether one of the three speeds is within ``NEAR``.
     """
 
     square: float
-    least: float
+    smallest: float
     curvature: float
     solved: float
     within: float
-    near: bool
+    is_near: bool
 
 
 @dataclass(frozen=True)
@@ -88,15 +88,15 @@ class Line:
         """
         widths: dict[float, float] = {}
         for m in self._minima(n):
-            if m.near and m.least <= m.within:
-                at, width = float(np.sqrt(m.square)), float(np.sqrt((m.within + abs(m.least)) / m.curvature))
+            if m.is_near and m.smallest <= m.within:
+                at, width = float(np.sqrt(m.square)), float(np.sqrt((m.within + abs(m.smallest)) / m.curvature))
                 if not any(abs(at / touched - 1.0) <= wide for touched, wide in widths.items()):
                     widths[at] = width / (2.0 * m.square)
         return widths
 
     def near_crossings(self, n: int) -> list[float]:
         """Speeds, rad/s, at which to solve: the frequency may reach n per revolution there, but not at the solved speeds."""
-        return [float(np.sqrt(m.square)) for m in self._minima(n) if not m.near and m.least <= 0.5 * m.solved]
+        return [float(np.sqrt(m.square)) for m in self._minima(n) if not m.is_near and m.smallest <= 0.5 * m.solved]
 
     def _minima(self, n: int) -> Iterator[_Minimum]:
         distance = self.values - n**2 * self.squares
@@ -121,7 +121,7 @@ class Line:
 
 def line_of(tracks: Tracks, t: int) -> Line | None:
     """A track as a line; None if it exists at fewer than two speeds."""
-    k = np.flatnonzero(tracks.place[:, t] >= 0)
+    k = np.flatnonzero(tracks.mode_index[:, t] >= 0)
     if len(k) < 2:
         return None
     return Line(tracks.omega[k] ** 2, tracks.frequencies[k, t] ** 2, tracks.uncertainty[k, t])

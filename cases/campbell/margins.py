@@ -21,13 +21,13 @@ class Southwell:
     """``ω² = ω₀² + φ Ω²`` (Southwell and Gough 1921) by least squares over the requested speeds.
 
     Attributes:
-        rest: ω₀, rad/s.
+        at_rest: ω₀, rad/s.
         coefficient: φ.
         residual: largest deviation of the fitted frequency, relative.
         uncertainty: absolute uncertainty of the coefficient, due to those of the frequencies.
     """
 
-    rest: float
+    at_rest: float
     coefficient: float
     residual: float
     uncertainty: float
@@ -43,7 +43,7 @@ class Margin:
         track: index of the track.
         per_rev: n.
         low, high: margins at the ends of the range.
-        least: smallest margin within the range; 0 if they meet.
+        smallest: smallest margin within the range; 0 if they meet.
         omega: speed of the smallest margin, rad/s.
         uncertainty: uncertainty of the margin, due to that of the frequency.
         kept: whether the required margin is kept, with the uncertainty taken into account.
@@ -53,7 +53,7 @@ class Margin:
     per_rev: int
     low: float
     high: float
-    least: float
+    smallest: float
     omega: float
     uncertainty: float
     kept: bool
@@ -61,7 +61,7 @@ class Margin:
 
 def southwell(tracks: Tracks, t: int) -> Southwell | None:
     """The fit of one track; None if it exists at fewer than three of the requested speeds."""
-    k = np.flatnonzero(tracks.asked & (tracks.place[:, t] >= 0))
+    k = np.flatnonzero(tracks.requested & (tracks.mode_index[:, t] >= 0))
     if len(k) < 3:
         return None
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]

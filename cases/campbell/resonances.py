@@ -32,7 +32,7 @@ class Resonance:
         frequency: rad/s.
         uncertainty: relative uncertainty of both, due to that of the frequency at this speed and to the error of Newton's
             last step; where the track cannot be followed there, to the interpolation between solved speeds instead.
-        apart: distance of the speed from the operating range, relative to the nearer end of the range; negative below,
+        distance: distance of the speed from the operating range, relative to the nearer end of the range; negative below,
             0 inside; None without an operating range.
         touches: whether the track comes so near to n per revolution that it may touch it, without crossing it.
     """
@@ -42,7 +42,7 @@ class Resonance:
     omega: float
     frequency: float
     uncertainty: float
-    apart: float | None
+    distance: float | None
     touches: bool = False
 
 
@@ -94,7 +94,7 @@ def unlisted(tracks: Tracks, per_rev: Sequence[int]) -> tuple[Unlisted, ...]:
     No solver's mode is missing, so the number of modes below n Ω is exact at each solved speed.
     """
     out = []
-    present = tracks.place >= 0
+    present = tracks.mode_index >= 0
     for n in per_rev:
         below = present & (np.nan_to_num(tracks.frequencies, nan=np.inf) < n * tracks.omega[:, None])
         both = present[1:] & present[:-1]
@@ -112,7 +112,7 @@ def _solved(
     It stays between two solved speeds. Its slope is first the line's, then that to the nearest point where it is certain. The
     interpolated speed and its uncertainty are returned if the mode at a speed is not certainly that of the track.
     """
-    tracked = np.flatnonzero(tracks.place[:, t] >= 0)
+    tracked = np.flatnonzero(tracks.mode_index[:, t] >= 0)
     k = tracked[np.searchsorted(tracks.omega[tracked], start).clip(1, len(tracked) - 1) - 1 :][:2]
     distances = {
         float(o**2): float(f**2 - (n * o) ** 2) for o, f in zip(tracks.omega[k], tracks.frequencies[k, t], strict=True)

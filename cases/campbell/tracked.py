@@ -55,18 +55,18 @@ def tracked(
             tuple(
                 NamedMode(
                     float(tracks.omega[k]),
-                    int(tracks.place[k, t]) + 1,
-                    names[k][tracks.place[k, t]],
+                    int(tracks.mode_index[k, t]) + 1,
+                    names[k][tracks.mode_index[k, t]],
                     float(tracks.frequencies[k, t]),
                     float(tracks.uncertainty[k, t]),
                     tracks.solved[k].strain,
                 )
-                for k in np.flatnonzero(tracks.asked & (tracks.place[:, t] >= 0))
+                for k in np.flatnonzero(tracks.requested & (tracks.mode_index[:, t] >= 0))
             ),
             tuple(d for d in tracks.doubts if d.track == t),
         )
         for t in range(tracks.count)
-        if (tracks.place[tracks.asked, t] >= 0).any()
+        if (tracks.mode_index[tracks.requested, t] >= 0).any()
     )
 
 

@@ -60,10 +60,10 @@ class Tracks:
 
     Attributes:
         omega: (n,) solved rotor speeds, rad/s, ascending: the requested and the inserted ones.
-        asked: (n,) whether the speed was requested.
+        requested: (n,) whether the speed was requested.
         frequencies: (n, t) rad/s; NaN before the beginning and after the end of a track.
         uncertainty: (n, t) relative; likewise, and infinite if unknown.
-        place: (n, t) number of the mode from the lowest, 0 upwards; −1 where there is none.
+        mode_index: (n, t) number of the mode from the lowest, 0 upwards; −1 where there is none.
         mac: (n, t) MAC with the previous speed; NaN where there is none.
         shapes: (n, t, 21, 4) complex; NaN where there is none.
         solved: all modes at each speed, including those without a track.
@@ -74,10 +74,10 @@ class Tracks:
     """
 
     omega: Array
-    asked: NDArray[np.bool_]
+    requested: NDArray[np.bool_]
     frequencies: Array
     uncertainty: Array
-    place: NDArray[np.intp]
+    mode_index: NDArray[np.intp]
     mac: Array
     shapes: NDArray[np.complex128]
     solved: tuple[Modes, ...]
@@ -226,7 +226,7 @@ def _tables(
     n, t = len(points), len(names)
     column = {name: i for i, name in enumerate(names)}
     frequencies, uncertainties, similar = (np.full((n, t), np.nan) for _ in range(3))
-    place = np.full((n, t), -1)
+    mode_index = np.full((n, t), -1)
     shapes = np.full((n, t, *points[0].shapes.shape[1:]), np.nan, complex)
     bound = np.full((n, t, t), np.nan)
     for k, modes in enumerate(points):
@@ -235,7 +235,7 @@ def _tables(
             if name in column:
                 i = column[name]
                 uncertainties[k, i] = uncertainty[p]
-                frequencies[k, i], place[k, i], shapes[k, i] = modes.frequencies[p], p, modes.shapes[p]
+                frequencies[k, i], mode_index[k, i], shapes[k, i] = modes.frequencies[p], p, modes.shapes[p]
                 if k and name in owner[k - 1]:
                     similar[k, i] = links[k - 1].table[owner[k - 1].index(name), p]
         for (i, j), gap in links[k - 1].bounds.items() if k else ():
@@ -244,7 +244,17 @@ def _tables(
                 bound[k, pair[0], pair[1]] = bound[k, pair[1], pair[0]] = gap
     omega = np.array([modes.omega for modes in points])
     unclear = tuple(Doubt(d.omega, column[d.track], d.frequency, d.mac, d.rival) for d in doubts if d.track in column)
-    asked = np.isin(omega, speeds)
+    requested = np.isin(omega, speeds)
     return Tracks(
-        omega, asked, frequencies, uncertainties, place, similar, shapes, tuple(points), bound, unclear, smallest
+        omega,
+        requested,
+        frequencies,
+        uncertainties,
+        mode_index,
+        similar,
+        shapes,
+        tuple(points),
+        bound,
+        unclear,
+        smallest,
     )

@@ -109,7 +109,9 @@ def _one(path: Path, field: str, spec: CondenseFile, piece: Piece, piece_model: 
     else:
         R = ties.motion(piece_model.model.points, piece_model.model.directions, a.frame)
         J = R.T @ (piece_model.mass @ R)
-    return segment_from_matrix(condensation.condense(piece_model.model, (a, b)).stiffness, ties.seen(a, b), J, name)
+    return segment_from_matrix(
+        condensation.condense(piece_model.model, (a, b)).stiffness, ties.relative_pose(a, b), J, name
+    )
 
 
 def _body(path: Path, field: str, body: Body, metres: float, frame: Array) -> Array:

@@ -146,8 +146,8 @@ class Property:
     """A property of a blade, and the blade without it; large enough that dropping it shows at ``omega`` (rad/s)."""
 
     name: str
-    having: Blade
-    lacking: Blade = BEAM
+    blade: Blade
+    without: Blade = BEAM
     omega: float = SPEED
 
 

@@ -48,7 +48,7 @@ def declares(code: BladeAdapter) -> None:
 
 def refuses(code: BladeAdapter) -> None:
     """``unsupported`` and ``solve`` agree."""
-    reasons = [(p, code.unsupported(p.having)) for p in PROPERTIES]
+    reasons = [(p, code.unsupported(p.blade)) for p in PROPERTIES]
     for p, reason in reasons:
         if reason is None:
             continue
@@ -56,7 +56,7 @@ def refuses(code: BladeAdapter) -> None:
             reason.strip() and "\n" not in reason, f"{p.name}: unsupported: {reason!r}: not one line with the reason"
         )
         try:
-            code.solve(p.having, 0.0, code.levels[0], 1)
+            code.solve(p.blade, 0.0, code.levels[0], 1)
         except CodeError:
             continue
         raise BrokenError(f"{p.name}: unsupported returns {reason!r}, but solve answers: it must raise CodeError")

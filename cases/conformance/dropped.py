@@ -30,7 +30,7 @@ def _with_and_without(name: str, effects: Effects) -> tuple[Array, Array]:
     """Core's frequencies of the blades with and without a property."""
     (prop,) = (p for p in PROPERTIES if p.name == name)
     with_property, without_property = (
-        solve.mesh_modes(b, prop.omega, 30, 4, effects=effects) for b in (prop.having, prop.lacking)
+        solve.mesh_modes(b, prop.omega, 30, 4, effects=effects) for b in (prop.blade, prop.without)
     )
     return with_property.frequencies, without_property.frequencies
 
@@ -74,7 +74,7 @@ def effects(code: BladeAdapter) -> None:
 
 def keeps(prop: Property, code: BladeAdapter) -> None:
     """A property is not silently dropped; checked with two coarse levels."""
-    frequencies, _, bracket = limit_of(code, prop.having, prop.omega)
+    frequencies, _, bracket = limit_of(code, prop.blade, prop.omega)
     with_property, without_property = _with_and_without(prop.name, code.effects)
     change = _far(with_property, without_property)
     if change < VISIBLE:

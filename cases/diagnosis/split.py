@@ -28,12 +28,12 @@ class ModeSplit:
 
     Attributes:
         mode: name.
-        rest, rest_reference: ω₀, rad/s; nan if the numbers do not determine it.
+        at_rest, rest_reference: ω₀, rad/s; nan if the numbers do not determine it.
         slope, slope_reference: φ; nan without two speeds.
     """
 
     mode: str
-    rest: float
+    at_rest: float
     rest_reference: float
     slope: float
     slope_reference: float
@@ -41,7 +41,7 @@ class ModeSplit:
     @property
     def offset(self) -> float:
         """Relative difference at rest."""
-        return self.rest / self.rest_reference - 1.0
+        return self.at_rest / self.rest_reference - 1.0
 
 
 def split(names: Sequence[Sequence[str]], speeds: Array, frequencies: Array, reference: Array) -> tuple[ModeSplit, ...]:
@@ -81,7 +81,7 @@ def indication(modes: Sequence[ModeSplit], fastest: float, uncertainty: float) -
         fastest: highest speed, rad/s.
         uncertainty: relative; smaller differences are not mentioned.
     """
-    sloped = [mode for mode in modes if np.isfinite([mode.slope, mode.rest, mode.rest_reference]).all()]
+    sloped = [mode for mode in modes if np.isfinite([mode.slope, mode.at_rest, mode.rest_reference]).all()]
     rising = [mode for mode in sloped if mode.slope_reference * fastest**2 > 0.02 * mode.rest_reference**2]
     if rising and all(mode.slope < -FALLS * mode.slope_reference for mode in rising):
         return "frequencies fall with speed where the solver's rise: geometric stiffness is missing or reversed"
@@ -89,7 +89,7 @@ def indication(modes: Sequence[ModeSplit], fastest: float, uncertainty: float) -
         return "frequencies do not move with speed: geometric stiffness or the rotation is missing"
     if not sloped:
         return ""
-    at_rest = np.array([mode.rest**2 - mode.rest_reference**2 for mode in sloped])
+    at_rest = np.array([mode.at_rest**2 - mode.rest_reference**2 for mode in sloped])
     turning = np.array([(mode.slope - mode.slope_reference) * fastest**2 for mode in sloped])
     expected_squares = np.array(
         [mode.rest_reference**2 + max(mode.slope_reference, 0.0) * fastest**2 for mode in sloped]

@@ -21,13 +21,13 @@ class ReaderFault:
 
     Attributes:
         name: short name.
-        what: one sentence.
+        description: one sentence.
         alter: from the right blade to the wrong one.
         part: the property that a second reading must state to detect it; empty if every second reading does.
     """
 
     name: str
-    what: str
+    description: str
     alter: Callable[[Blade], Blade]
     part: str = ""
 
@@ -82,7 +82,7 @@ def of_file(case: str, omega: float, file: BladeFile) -> list[Control]:
     correct_rows, _ = properties.of_reading(case, file, file.blade)
     out = []
     for fault in READER:
-        control = Control(fault.name, "reader", fault.what, "", case, omega, ())
+        control = Control(fault.name, "reader", fault.description, "", case, omega, ())
         if reasons := [row.reason for row in correct_rows if row.verdict == "not run"]:
             out.append(replace(control, needs=reasons[0]))
             continue

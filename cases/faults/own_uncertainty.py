@@ -46,7 +46,7 @@ class _Fault:
     """A fault of judging, by its seams."""
 
     name: str
-    what: str
+    description: str
     size: str
     seam: Seam
 
@@ -114,7 +114,7 @@ FAULTS = (
 def run(subject: BladeSubject) -> list[Control]:
     """Run the faults on a blade at its highest speed; a task for any process."""
     controls = [
-        Control(fault.name, "uncertainty", fault.what, fault.size, subject.name, max(subject.points), ())
+        Control(fault.name, "uncertainty", fault.description, fault.size, subject.name, max(subject.points), ())
         for fault in FAULTS
     ]
     try:

@@ -75,7 +75,7 @@ class Fault:
     Attributes:
         name: short name, for a table and for ``verify --faults``.
         area: the faulty component.
-        what: one sentence on what a program with this fault does.
+        description: one sentence on what a program with this fault does.
         size: size of its effect on the compared quantities of the trial.
         seams: the replaced objects.
         trial: the case to run; None if the fault ``blinds`` another, whose trial is run.
@@ -85,7 +85,7 @@ class Fault:
 
     name: str
     area: Area
-    what: str
+    description: str
     size: str
     seams: tuple[Seam, ...]
     trial: Trial | None = None
@@ -94,7 +94,7 @@ class Fault:
 
     def control(self, case: str, omega: float) -> Control:
         """The result on a case at a rotor speed, rad/s, if nothing detects the fault."""
-        return Control(self.name, self.area, self.what, self.size, case, omega, ())
+        return Control(self.name, self.area, self.description, self.size, case, omega, ())
 
 
 _LOCK = RLock()

@@ -90,7 +90,7 @@ class Discretisation(Struct, frozen=True, forbid_unknown_fields=True):
         return Effects(**dict.fromkeys(self.lacks, False))
 
     @property
-    def what(self) -> str:
+    def label(self) -> str:
         """Its name in a sentence."""
         return f"{self.elements} elements, {self.mass} masses, {self.stiffness} stiffness".replace("_", "-")
 

@@ -21,7 +21,7 @@ from ..input.mechanisms import Described
 from ..input.schema import rad_s
 from ..judge.cells import Head
 from ..judge.results import Setting
-from ..solve.mechanism import QUANTITIES, asked, compared, formula, references
+from ..solve.mechanism import QUANTITIES, answers_at, compared, formula, references
 from ..solve.reference import References
 from .column import Column, unasked
 from .subject import NotABlade
@@ -142,7 +142,7 @@ def _columns(described: Described, compare: Compare, codes: Sequence[Description
     for code in [code for code in codes if code.mechanisms] or codes:
         head = Head(name, code.name, code.version or "", "same discretisation", target, code.shares)
         refusal = "" if code.mechanisms else "the code takes blades, not mechanisms"
-        work = partial(compared, head, described, partial(asked, code.asked, head.version, limits))
+        work = partial(compared, head, described, partial(answers_at, code.asked, head.version, limits))
         column = unasked(head, code, refusal) or Column(code.name, ALL_EFFECTS, head, work)
         out.append(replace(column, origin=code.independence))
     if form := described.text.closed_form:

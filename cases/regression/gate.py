@@ -54,7 +54,7 @@ class MissingAnswer:
     """A missing answer and its replacement: the verdict on that code at that speed, or nothing."""
 
     point: Point
-    instead: Verdict | None
+    replacement: Verdict | None
 
 
 @dataclass(frozen=True)

@@ -70,7 +70,7 @@ def _turning(described: Described, omega: float) -> mb.Mechanism:
     return at_rate(described.mechanism, described.text.rotor, omega)
 
 
-def asked(
+def answers_at(
     name: str, version: str, limits: Limits, described: Described, speeds: Sequence[float]
 ) -> list[MechanismAnswer]:
     """The answers of a code."""

@@ -136,7 +136,7 @@ def rows(
                     cell = printed(head, omega, i, reference, value, note)
                     if series.grounds and cell.verdict == "pass":
                         cell = replace(cell, reason=f"target {unsigned(head.target)}: {series.grounds}")
-                    cells.append(explained_by_discretisation(cell, coarse[i], source.what) if source else cell)
+                    cells.append(explained_by_discretisation(cell, coarse[i], source.label) if source else cell)
     return cells, []
 
 

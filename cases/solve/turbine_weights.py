@@ -60,7 +60,7 @@ def _body(mesh: Mesh) -> np.ndarray:
 
 def rows(case: str, code: str, release: str, model: Fingerprint, weighed: Weighed) -> list[PropertyCheck]:
     """The rows of one model; first moments are compared relative to mass times height."""
-    moments = weighed.whole
+    moments = weighed.total
     moment = moments.mass * weighed.height
     inertia = moments.inertia
     own = model.inertia or (0.0, 0.0, 0.0)

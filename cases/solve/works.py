@@ -57,7 +57,9 @@ def as_in_source(head: Head, blade: Blade, source: Discretisation, core: Referen
 
     refining = core_solver.as_given(source)
     solved = refinements(ask, refining, core)
-    return joined(source_discretisation_cells(head, omega, r, s, refining.order, source.what) for omega, r, s in solved)
+    return joined(
+        source_discretisation_cells(head, omega, r, s, refining.order, source.label) for omega, r, s in solved
+    )
 
 
 def same_code(

@@ -67,15 +67,15 @@ class Plan:
     Attributes:
         subjects: what is verified.
         codes: descriptions of the codes, which have been asked about every blade.
-        added: results of other programs and measurements.
-        about: the run without rows.
+        user_results: results of other programs and measurements.
+        empty_run: the run without rows.
         faults: names of the seeded faults.
     """
 
     subjects: tuple[Subject, ...]
     codes: tuple[Description, ...]
-    added: tuple[UserResults, ...]
-    about: Run
+    user_results: tuple[UserResults, ...]
+    empty_run: Run
     faults: tuple[str, ...]
 
 
@@ -177,7 +177,7 @@ def _solved(
     request: Request, plan: Plan, pool: Executor, users: Store | None, answers: Unfinished | None, observer: Observer
 ) -> Run:
     """The complete run. That a fault is detected is taken from the store only if no version of a code has changed."""
-    state = tuple(f"{name} {version}" for name, version in sorted(plan.about.versions.items()))
+    state = tuple(f"{name} {version}" for name, version in sorted(plan.empty_run.versions.items()))
     serial = request.execution.threads or request.execution.workers == 0
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
     users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
@@ -199,7 +199,7 @@ def _solved(
 
     def begin(columns: tuple[Planned, ...]) -> None:
         if answers:
-            answers.begin(replace(plan.about, plan=columns))
+            answers.begin(replace(plan.empty_run, plan=columns))
         if not serial:
             try_faults()
 
@@ -212,7 +212,7 @@ def _solved(
             request.time_limit,
             int(request.memory_limit * 2**30),
             users is not None,
-            plan.added,
+            plan.user_results,
             on_plan=begin,
         )
         if serial:  # a fault alters modules, which no other thread may use at that time
@@ -232,7 +232,7 @@ def _solved(
         for run_own in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
             on_own += [trials.submit(run_own, subject) for subject in users_blades]
         controls = {control.control: control for future in trial_futures for control in future.result()}
-    empty_run = plan.about
+    empty_run = plan.empty_run
     ordered = (*(c for future in on_own for c in future.result()), *(controls[name] for name in elsewhere))
     if times := [*tasks.taken, *trials.taken]:
         observer.note(_taken(times, tasks.asked + trials.asked))

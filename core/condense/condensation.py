@@ -105,7 +105,7 @@ def segment(fe_model: FiniteElements, a: Tie, b: Tie) -> Segment:
         CondensationError: as ``condense`` and ``between``, or a model without mass.
     """
     c = condense(fe_model, (a, b))
-    undeformed = ties.seen(a, b)
+    undeformed = ties.relative_pose(a, b)
     displacements = c.displacements[:, 6:] @ sp.adjoint(sp.inverse(undeformed))
     return Segment(
         undeformed,
@@ -145,9 +145,9 @@ def segments_in_place(fe_model: FiniteElements, sections: Sequence[Tie], masses:
     twists = [t.mean @ displacements[t.freedoms] for t in sections]
     out = []
     for k, (a, b) in enumerate(pairwise(sections)):
-        undeformed = ties.seen(a, b)
+        undeformed = ties.relative_pose(a, b)
         rho = sp.adjoint(undeformed) @ twists[k + 1] - twists[k]
-        wrench = sp.adjoint(ties.seen(sections[-1], a)).T @ tip
+        wrench = sp.adjoint(ties.relative_pose(sections[-1], a)).T @ tip
         flexibility = np.linalg.solve(wrench.T, rho.T).T
         size = np.sqrt(np.abs(np.diagonal(flexibility)))
         unit = flexibility / np.outer(size, size)

@@ -188,6 +188,6 @@ def _tie(
     return Tie(name, kind, frame, freedoms, R, np.linalg.solve(gram, weighed))
 
 
-def seen(a: Tie, b: Tie) -> Array:
+def relative_pose(a: Tie, b: Tie) -> Array:
     """Pose (4, 4) of b's frame in a's."""
     return sp.inverse(a.frame) @ b.frame

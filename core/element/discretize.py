@@ -61,7 +61,7 @@ def discretize(
             f"load: shape {load.shape}: give three finite forces per length for each of {len(blade.stations)} stations"
         )
     if at is None:
-        at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.SAME * blade.length)
+        at = curve.on_kinks(STATIONS * blade.length, blade.kinks, curve.KINK_TOLERANCE * blade.length)
     seg = sections.integrate(blade, s, at)
     nodes, undeformed = seg.nodes, seg.undeformed
     corner = np.tile(np.eye(4), (elements, 1, 1))

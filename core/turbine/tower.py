@@ -37,7 +37,7 @@ SAFETY = 3.0
 POINTS = 4
 """Gauss points of the soil's stiffness in each part of an element."""
 
-SAME = 1e-9
+MIN_SPACING = 1e-9
 """Heights closer than this fraction of the length coincide."""
 
 PLATFORM = ("heave", "sway", "surge", "yaw", "pitch", "roll")
@@ -188,7 +188,9 @@ def check_tower(length: float, support: Support) -> None:
         checked("spring", stiffness, False)
     soil = np.zeros((0, 2)) if support.soil is None else support.soil
     for label, positions in (("springs", heights), ("soil", soil[:, 0])):
-        if len(positions) and not (-SAME * length <= positions.min() <= positions.max() <= (1 + SAME) * length):
+        if len(positions) and not (
+            -MIN_SPACING * length <= positions.min() <= positions.max() <= (1 + MIN_SPACING) * length
+        ):
             raise ValueError(
                 f"{label}: heights from {positions.min():g} to {positions.max():g} m: the tower is {length:g} m high"
             )
@@ -276,7 +278,7 @@ def _ends(beam: Blade, support: Support, elements: int) -> Array:
     length = beam.length
     heights = np.array([height for height, _ in support.springs])
     ends = np.sort(np.concatenate([divide(beam, elements), heights]))
-    return ends[np.append(True, np.diff(ends) > SAME * length)]
+    return ends[np.append(True, np.diff(ends) > MIN_SPACING * length)]
 
 
 def _gauss(ends: Array, soil: Array) -> tuple[Array, Array]:

@@ -33,7 +33,7 @@ ACCURACY = 1e-7
 EQUAL = 1e-6
 """Relative difference below which two participations are equal."""
 
-SAME = 0.5
+MIN_LIKENESS = 0.5
 """Part of a mode with all motions that is the mode of the lowest motions; with a smaller one, more motions are needed."""
 
 MORE_MOTIONS = 4
@@ -104,7 +104,10 @@ def _lowest(
         )
         if full is None:
             return None
-        if any(abs(s - full[0]) <= 10.0 * ACCURACY * abs(system.omega) and _alike(p, full[1]) > SAME for s, p in out):
+        if any(
+            abs(s - full[0]) <= 10.0 * ACCURACY * abs(system.omega) and _alike(p, full[1]) > MIN_LIKENESS
+            for s, p in out
+        ):
             return None
         out.append(full)
     return out
@@ -117,7 +120,7 @@ def _led(system: Periodic, half_turn: Array, value: complex, harmonics: Complex)
         exponent, p, _ = hill.refined(system, value, guess, ACCURACY, half_turn)
     except PeriodicError:
         return None
-    return (exponent, p) if _alike(p, guess) > SAME else None
+    return (exponent, p) if _alike(p, guess) > MIN_LIKENESS else None
 
 
 def _followed(

@@ -30,7 +30,7 @@ NOTHING = Moments(0.0, np.zeros(3), np.zeros((3, 3)))
 
 POINTS, WEIGHTS = np.polynomial.legendre.leggauss(8)
 
-SAME = 1e-6
+MAX_MISALIGNMENT = 1e-6
 """Largest difference of lengths, relative, and of directions that are the same."""
 
 
@@ -71,7 +71,7 @@ class Part:
         return Moments(mass, np.array([0.0, 0.0, first]), np.diag([x, y, second]))
 
     @property
-    def whole(self) -> Moments:
+    def total(self) -> Moments:
         """Of sections and masses."""
         return sum((lump for _, lump in self.lumped), self.line)
 
@@ -91,7 +91,7 @@ class Machine:
 
     def moments(self, name: str) -> Moments:
         """Of a body, in the ground's axes."""
-        return self.parts[name].whole.moved(self.axes[name], self.places[name])
+        return self.parts[name].total.moved(self.axes[name], self.places[name])
 
     @property
     def top(self) -> Array:
@@ -254,7 +254,11 @@ def _assembled(path: Path, structure: Any, StFile: Any) -> Machine:
         axes[name], places[name] = axes[parent] @ turns[name], places[parent] + axes[parent] @ end
     axis = axes[shaft] @ axis_of[shaft]
     axis = axis / np.linalg.norm(axis) * (1.0 if axis @ axes[blades[0]][:, 1] >= 0 else -1.0)
-    if abs(axis[0]) > SAME or axis[1] < 0 or np.abs(axes[tower][:, 1] - [0.0, 1.0, 0.0]).max() > SAME:
+    if (
+        abs(axis[0]) > MAX_MISALIGNMENT
+        or axis[1] < 0
+        or np.abs(axes[tower][:, 1] - [0.0, 1.0, 0.0]).max() > MAX_MISALIGNMENT
+    ):
         raise NotReadError("the nacelle is yawed: its places are not read a second time")
     order = names.index(shaft)
     rotor = (shaft, *(name for name in names if name not in names[: order + 1] and name not in blades))

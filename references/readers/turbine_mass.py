@@ -49,12 +49,12 @@ class Weighed:
     """Mass and inertia of a turbine.
 
     Attributes:
-        whole: moments of the whole turbine.
+        total: moments of the whole turbine.
         rotor: moment of inertia about the shaft without the generator, kg m².
         height: of the tower's top, m.
     """
 
-    whole: Moments
+    total: Moments
     rotor: float
     height: float
 

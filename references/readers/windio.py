@@ -20,7 +20,7 @@ from .windio_schema import violations
 PLAUSIBLE = 1.0
 """Largest twist in radians: a file of windIO 1 with a larger number has degrees."""
 
-SAME = 1e-9
+MIN_STEP = 1e-9
 """Grid points closer than this fraction of the length are one."""
 
 
@@ -52,7 +52,7 @@ def read(path: Path, options: ReadingOptions) -> Stations:
     else:
         raise NotReadError("no 6×6 matrices in it")
     eta = np.sort(np.concatenate(grids))
-    eta = eta[np.append(True, np.diff(eta) > SAME)]
+    eta = eta[np.append(True, np.diff(eta) > MIN_STEP)]
     matrices = [
         sections.permuted(make_interp_spline(grid, values, k=1)(eta), *sections.OPENFAST)
         for grid, values in zip(grids, (stiffness, mass), strict=True)
@@ -104,7 +104,7 @@ def _axis(axis: Mapping[str, Any], twist: Mapping[str, Any], to_radians: float) 
     """The reference curve, natural cubic splines in z through all grid points, and the twist (rad) along it."""
     parts = [axis["x"], axis["y"], axis["z"], twist]
     grid = np.sort(np.concatenate([np.array(part["grid"], float) for part in parts]))
-    grid = grid[np.append(True, np.diff(grid) > SAME)]
+    grid = grid[np.append(True, np.diff(grid) > MIN_STEP)]
     x, y, z, angle = (PchipInterpolator(np.array(p["grid"], float), np.array(p["values"], float))(grid) for p in parts)
     z[0] = 0.0
     natural = "natural" if len(z) > 2 else None

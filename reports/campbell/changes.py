@@ -21,10 +21,10 @@ def sheet(differences: Sequence[ModeDifference], against: str, units: Units) -> 
         (
             row.name,
             f"{row.omega * units.speeds:.6g}",
-            certain(row.other * units.frequencies, row.uncertainty) if not isnan(row.other) else "–",
-            certain(row.frequency * units.frequencies, 0.0 if isnan(row.other) else row.uncertainty),
-            percent(row.relative) if not isnan(row.other) else "no partner",
-            f"{100 * row.uncertainty:.0e} %" if not isnan(row.other) else "–",
+            certain(row.partner * units.frequencies, row.uncertainty) if not isnan(row.partner) else "–",
+            certain(row.frequency * units.frequencies, 0.0 if isnan(row.partner) else row.uncertainty),
+            percent(row.relative) if not isnan(row.partner) else "no partner",
+            f"{100 * row.uncertainty:.0e} %" if not isnan(row.partner) else "–",
         )
         for row in differences
     )

@@ -24,9 +24,9 @@ def sheet(diagram: Campbell, confirmed: Sequence[Confirmed], units: Units) -> Sh
         for row in confirmed
     )
     disagreements = dict.fromkeys(
-        f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.others)}"
+        f"{diagram.labels.at(r.track, r.omega)}, {units.at(r.omega)}: {', '.join(r.dissenting)}"
         for r in confirmed
-        if r.others
+        if r.dissenting
     )
     without = f" Without agreement: {'; '.join(disagreements)}." if disagreements else ""
     note = (

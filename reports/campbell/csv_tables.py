@@ -24,10 +24,10 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             k + 1,
             repr(float(tracks.omega[k])),
             f"{tracks.omega[k] * 30 / np.pi:.9g}",
-            int(tracks.asked[k]),
+            int(tracks.requested[k]),
             t + 1,
             diagram.labels[t],
-            int(tracks.place[k, t]) + 1,
+            int(tracks.mode_index[k, t]) + 1,
             repr(float(tracks.frequencies[k, t])),
             f"{tracks.frequencies[k, t] / (2 * np.pi):.9g}",
             f"{tracks.uncertainty[k, t]:.6g}",
@@ -37,7 +37,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
         )
         for k in range(len(tracks.omega))
         for t in range(tracks.count)
-        if tracks.place[k, t] >= 0
+        if tracks.mode_index[k, t] >= 0
     ]
     speed = ("speed_number", "omega_rad_s", "rotor_speed_rpm", "asked_for")
     columns = [*speed, "track", "name", "mode", "frequency_rad_s", "frequency_hz"]
@@ -49,14 +49,14 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             r.omega,
             r.frequency,
             f"{r.uncertainty:.6g}",
-            "" if r.apart is None else r.apart,
+            "" if r.distance is None else r.distance,
             int(r.touches),
         )
         for r in diagram.resonances
     ]
     margins = [
         (
-            *(diagram.labels[m.track], m.per_rev, m.low, m.high, m.least, m.omega),
+            *(diagram.labels[m.track], m.per_rev, m.low, m.high, m.smallest, m.omega),
             *(f"{m.uncertainty:.6g}", "rad/s" if diagram.request.margin.unit else "relative", int(m.kept)),
         )
         for m in diagram.margins
@@ -72,7 +72,7 @@ def write(diagram: Campbell, folder: Path) -> tuple[Path, ...]:
             *[diagram.labels[t] for t in e.tracks],
             e.exchanged,
             *e.window,
-            int(e.whole),
+            int(e.complete),
         )
         for e in diagram.encounters
     ]

@@ -56,7 +56,7 @@ def _panel(axes: Axes, diagram: Campbell, e: Encounter, units: Units) -> None:
     low, high = _window(diagram, e)
     values: list[float] = []
     for t in e.tracks:
-        k = np.flatnonzero(tracks.place[:, t] >= 0)
+        k = np.flatnonzero(tracks.mode_index[:, t] >= 0)
         omega, squares = tracks.omega[k], tracks.frequencies[k, t] ** 2
         x = np.linspace(max(low, omega[0]), min(high, omega[-1]), 161)
         y = np.sqrt(PchipInterpolator(omega**2, squares)(x**2))

@@ -136,7 +136,7 @@ def _below(diagram: Campbell, units: Units) -> str:
 def _mode(axes: Axes, diagram: Campbell, t: int, units: Units) -> list[tuple[float, str, str]]:
     """Draw one track; return the label at its end, or nothing if the track ends earlier."""
     tracks = diagram.tracks
-    k = np.flatnonzero(tracks.place[:, t] >= 0)
+    k = np.flatnonzero(tracks.mode_index[:, t] >= 0)
     omega, frequency = tracks.omega[k], tracks.frequencies[k, t]
     x, y = _fine(omega, frequency)
     fractions = np.stack([np.interp(x, omega, diagram.energy_fractions[k, t, i]) for i in range(4)], axis=1)

@@ -132,7 +132,7 @@ def marks(axes: Axes, diagram: Campbell, units: Units) -> None:
     """Draw resonances (filled circles within the operating range), crossings, veerings and unclear tracks."""
     request = diagram.request
     for r in diagram.resonances:
-        inside = request.operating is not None and r.apart == 0.0
+        inside = request.operating is not None and r.distance == 0.0
         axes.plot(
             r.omega * units.speeds,
             r.frequency * units.frequencies,
@@ -177,9 +177,9 @@ def legend(diagram: Campbell) -> list[Line2D]:
     if MIXED in present:
         out.append(Line2D([], [], color=blend([0.5, 0.5, 0.0, 0.0]), lw=1.8, label="mixed: blended"))
     dot = {"marker": "o", "ls": "", "mew": 0.8}
-    if any(r.apart != 0.0 for r in diagram.resonances):
+    if any(r.distance != 0.0 for r in diagram.resonances):
         out.append(Line2D([], [], ms=4.0, mfc="white", mec=MUTED, label="resonance", **dot))
-    if any(r.apart == 0.0 for r in diagram.resonances):
+    if any(r.distance == 0.0 for r in diagram.resonances):
         out.append(Line2D([], [], ms=5.5, mfc=RED, mec="white", label="resonance in operation", **dot))
     if any(not m.kept for m in diagram.margins):
         label = f"within {diagram.request.margin} of n per rev"

@@ -70,7 +70,7 @@ def shapes_at(diagram: Campbell) -> int:
     """
     request, omega = diagram.request, diagram.tracks.omega
     target = request.operating[1] if request.operating else omega[-1]
-    requested = np.flatnonzero(diagram.tracks.asked)
+    requested = np.flatnonzero(diagram.tracks.requested)
     return int(requested[np.abs(omega[requested] - target).argmin()])
 
 

@@ -43,9 +43,9 @@ def scaled(diagram: Campbell, k: int, arm: float = 0.0) -> tuple[list[int], Comp
     the rotation times ``arm`` (m).
     """
     tracks = diagram.tracks
-    tracked = np.flatnonzero(tracks.place[k] >= 0)
-    order = tracked[np.argsort(tracks.place[k, tracked])]
-    shapes = in_blade_axes(tracks.solved[k], diagram.blade)[tracks.place[k, order]]
+    tracked = np.flatnonzero(tracks.mode_index[k] >= 0)
+    order = tracked[np.argsort(tracks.mode_index[k, tracked])]
+    shapes = in_blade_axes(tracks.solved[k], diagram.blade)[tracks.mode_index[k, order]]
     motions = shapes * [1.0, 1.0, 1.0, arm]
     farthest = np.abs(motions).reshape(len(order), -1).argmax(1)
     station, column = np.unravel_index(farthest, motions.shape[1:])

@@ -24,7 +24,7 @@ def _modes(diagram: Campbell, units: Units) -> Sheet:
     first, last = request.speeds[0], request.speeds[-1]
     rows = []
     for t in range(tracks.count):
-        k = np.flatnonzero(tracks.place[:, t] >= 0)
+        k = np.flatnonzero(tracks.mode_index[:, t] >= 0)
         fit = diagram.southwell[t]
         row = [diagram.labels[t], describe_fractions(diagram.energy_fractions[k[0], t])]
         for end in (0, -1):
@@ -108,8 +108,8 @@ def _resonances(diagram: Campbell, units: Units) -> Sheet:
             certain(r.frequency * units.frequencies, r.uncertainty),
             relative(r.uncertainty),
         ]
-        if r.apart is not None:
-            row.append(f"{TOO_NEAR} inside" if r.apart == 0 else f"{100 * r.apart:+.1f} %")
+        if r.distance is not None:
+            row.append(f"{TOO_NEAR} inside" if r.distance == 0 else f"{100 * r.distance:+.1f} %")
         rows.append(tuple(row))
     head = ["mode", "crosses", units.speed_label, units.frequency_label, "± relative"]
     note = "± relative: uncertainty of the speed and of the frequency; modes are solved at each crossing."
@@ -131,7 +131,7 @@ def _encounters(diagram: Campbell, units: Units) -> Sheet:
                 gap(e, units) if e.kind == "veering" else _narrower(e, units),
                 f"{lower} × {upper}",
                 f"{100 * e.exchanged:.0f} %"
-                + ("" if e.whole else " (incomplete: ends at the range of speeds or at another encounter)"),
+                + ("" if e.complete else " (incomplete: ends at the range of speeds or at another encounter)"),
                 f"{describe_fractions(e.before[0])} → {describe_fractions(e.after[0])}",
             )
         )
@@ -189,7 +189,7 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
     rows = [
         NamedMode(
             omega,
-            int(tracks.place[k, t]) + 1,
+            int(tracks.mode_index[k, t]) + 1,
             diagram.labels.at(t, omega),
             float(tracks.frequencies[k, t]),
             float(tracks.uncertainty[k, t]),
@@ -197,7 +197,7 @@ def notes(diagram: Campbell, units: Units) -> list[str]:
         )
         for k, omega in enumerate(tracks.omega.tolist())
         for t in range(tracks.count)
-        if tracks.place[k, t] >= 0
+        if tracks.mode_index[k, t] >= 0
     ]
     missing = [
         f"{u.per_rev}P: from {units.at(u.omega[0])} to {units.at(u.omega[1])} the number of modes below it changes by "
@@ -230,8 +230,8 @@ def verdict(diagram: Campbell, units: Units) -> str:
     sentences = []
     for t in dict.fromkeys(m.track for m in broken):
         margins = [m for m in broken if m.track == t]
-        crossed = ", ".join(f"{m.per_rev}P" for m in margins if m.least == 0.0)
-        near_by = ", ".join(f"{m.per_rev}P" for m in margins if m.least != 0.0)
+        crossed = ", ".join(f"{m.per_rev}P" for m in margins if m.smallest == 0.0)
+        near_by = ", ".join(f"{m.per_rev}P" for m in margins if m.smallest != 0.0)
         words = [
             f"crosses {crossed}" if crossed else "",
             f"comes within {request.margin} of {near_by}" if near_by else "",

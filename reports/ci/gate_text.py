@@ -116,7 +116,7 @@ def _gone(gone: Iterable[MissingAnswer], units: ByCase) -> list[Row]:
     rows = []
     for (case, code), group in groupby(sorted(gone, key=_column), key=_column):
         members = list(group)
-        replacements = sorted({g.instead or "nothing" for g in members})
+        replacements = sorted({g.replacement or "nothing" for g in members})
         rows.append(
             {
                 "case": case,

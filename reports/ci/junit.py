@@ -69,7 +69,7 @@ def _regressions(root: Element, gate: Comparison) -> None:
     for gone in gate.gone:
         p: Point = gone.point
         test = _test(suite, p.case, _name(p))
-        _failed(test, "gone", f"the answer {_digits(p)} is missing; now {gone.instead or 'nothing'}")
+        _failed(test, "gone", f"the answer {_digits(p)} is missing; now {gone.replacement or 'nothing'}")
     for control in gate.undetected:
         _lost(suite, control)
     for change in regressions:

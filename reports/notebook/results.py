@@ -115,7 +115,7 @@ class CampbellResult:
             columns=[self.diagram.labels[t] for t in range(tracks.count)],
         )
         frame.attrs["frequency"] = self.units.frequency
-        return pd.DataFrame(frame.loc[tracks.asked])
+        return pd.DataFrame(frame.loc[tracks.requested])
 
     def margins(self) -> pd.DataFrame:
         """One row per mode and order n: ``mode``, ``per_rev``, ``low``, ``high`` (margins at both ends of the operating range),

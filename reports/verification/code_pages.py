@@ -42,7 +42,7 @@ def write(run: Run, folder: Path) -> Path:
 
 def described(names: Sequence[str] | None = None) -> tuple[Description, ...]:
     """The descriptions of codes, by default all, with their answers to a rod with each property."""
-    return describe(registry.names() if names is None else names, [p.having for p in PROPERTIES])
+    return describe(registry.names() if names is None else names, [p.blade for p in PROPERTIES])
 
 
 def index(run: Run, codes: Sequence[Description]) -> str:

@@ -23,7 +23,7 @@ def headline(run: Run) -> str:
     return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{exceptions}."
 
 
-def said(control: Control) -> str:
+def outcome(control: Control) -> str:
     """The outcome of a control: ``✔ detected``, ``✘ missed``, ``– without effect here`` or ``○ needs exudyn-tree``."""
     if control.needs:
         return f"○ needs {control.needs}"
@@ -40,7 +40,7 @@ def overview(run: Run) -> list[dict[str, str]]:
             "in": control.area,
             "what": control.what,
             "size": control.size,
-            "outcome": said(control),
+            "outcome": outcome(control),
             "largest difference": percent(control.change) if control.change is not None else "",
             "detected by": _named(control.detected_by) or control.without_effect,
         }

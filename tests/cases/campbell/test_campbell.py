@@ -60,8 +60,8 @@ def test_southwells_coefficients_are_those_the_modes_were_made_with() -> None:
     flap, edge = diagram().southwell
     assert flap is not None
     assert edge is not None
-    assert (flap.rest, flap.coefficient) == (pytest.approx(2.0, rel=1e-12), pytest.approx(1.5, rel=1e-12))
-    assert (edge.rest, edge.coefficient) == (pytest.approx(3.0, rel=1e-12), pytest.approx(0.5, rel=1e-12))
+    assert (flap.at_rest, flap.coefficient) == (pytest.approx(2.0, rel=1e-12), pytest.approx(1.5, rel=1e-12))
+    assert (edge.at_rest, edge.coefficient) == (pytest.approx(3.0, rel=1e-12), pytest.approx(0.5, rel=1e-12))
     assert max(flap.residual, edge.residual) < 1e-12
 
 
@@ -88,12 +88,12 @@ def test_resonances_are_where_the_closed_form_says() -> None:
 
 
 def test_a_resonances_distance_from_the_operating_range_is_to_its_nearer_end() -> None:
-    result = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.8, 1.0)).resonances}
+    result = {(r.track, r.per_rev): r.distance for r in diagram(operating=(0.8, 1.0)).resonances}
     assert result[0, 3] == pytest.approx(2.0 / np.sqrt(7.5) / 0.8 - 1)  # 0.730 rad/s: below
     assert result[1, 2] == pytest.approx(3.0 / np.sqrt(3.5) / 1.0 - 1)  # 1.604 rad/s: above
-    inside = {(r.track, r.per_rev): r.apart for r in diagram(operating=(0.7, 2.0)).resonances}
+    inside = {(r.track, r.per_rev): r.distance for r in diagram(operating=(0.7, 2.0)).resonances}
     assert inside[0, 3] == inside[1, 2] == 0.0
-    assert all(r.apart is None for r in diagram(operating=None).resonances)
+    assert all(r.distance is None for r in diagram(operating=None).resonances)
 
 
 def test_the_uncertainty_of_a_coefficient_and_of_a_margin_is_that_of_the_frequencies() -> None:
@@ -127,8 +127,8 @@ def test_margins_at_the_ends_and_the_least_are_those_of_the_closed_form() -> Non
         ends = [np.sqrt(square(o)) / (n * o) - 1 for o in (1.0, 2.0)]
         assert (m.low, m.high) == (pytest.approx(ends[0], rel=1e-9), pytest.approx(ends[1], rel=1e-9))
         meets = ends[0] * ends[1] < 0
-        assert m.least == pytest.approx(0.0 if meets else min(ends, key=abs), rel=1e-9)
-        assert m.kept == (abs(m.least) >= 0.1)
+        assert m.smallest == pytest.approx(0.0 if meets else min(ends, key=abs), rel=1e-9)
+        assert m.kept == (abs(m.smallest) >= 0.1)
     assert not result[0, 2].kept
     assert result[0, 2].uncertainty == 0.0
     assert result[0, 2].omega == pytest.approx(2.0 / np.sqrt(2.5), rel=1e-9)
@@ -171,7 +171,7 @@ def test_lines_are_confirmed_at_the_stated_ends_of_the_operating_range() -> None
 def test_an_operating_range_from_rest_and_one_of_a_single_speed() -> None:
     from_rest = {(m.track, m.per_rev): m for m in diagram(operating=(0.0, 2.0)).margins}
     assert from_rest[0, 1].low > 1e6
-    assert from_rest[0, 1].least == pytest.approx(np.sqrt(10.0) / 2.0 - 1.0)
+    assert from_rest[0, 1].smallest == pytest.approx(np.sqrt(10.0) / 2.0 - 1.0)
     at_one = {(m.track, m.per_rev): m for m in diagram(operating=(2.0, 2.0)).margins}
     assert at_one[0, 1].low == at_one[0, 1].high == pytest.approx(np.sqrt(10.0) / 2.0 - 1.0)
 
@@ -340,7 +340,7 @@ def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
     resonances = page["Crossings of n per revolution"].rows
     assert len(resonances) == len(veering.resonances)
     text = markdown(page["Crossings of n per revolution"])
-    assert text.count("**✘ inside**") == sum(r.apart == 0 for r in veering.resonances) > 0
+    assert text.count("**✘ inside**") == sum(r.distance == 0 for r in veering.resonances) > 0
 
 
 def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
@@ -372,7 +372,7 @@ def test_csv_holds_the_numbers(veering: Campbell, tmp_path: Path) -> None:
     csv_tables.write(veering, tmp_path)
     with (tmp_path / "campbell.csv").open() as file:
         rows = list(csv.DictReader(file))
-    assert len(rows) == veering.tracks.place.size
+    assert len(rows) == veering.tracks.mode_index.size
     third = [r for r in rows if r["name"] == "flapwise 2"]
     np.testing.assert_allclose(
         [float(r["frequency_rad_s"]) for r in third],

@@ -31,7 +31,7 @@ def met(tracks: Tracks) -> tuple[Encounter, ...]:
 def by_track(tracks: Tracks, blade: Blade) -> np.ndarray:
     """Shares (n, t, 4) of tracks that are there at every speed."""
     shares = [participation(solved, blade) for solved in tracks.solved]
-    return np.stack([share[place] for share, place in zip(shares, tracks.place, strict=True)])
+    return np.stack([share[place] for share, place in zip(shares, tracks.mode_index, strict=True)])
 
 
 @settings(max_examples=25, deadline=None)
@@ -44,7 +44,7 @@ def test_coupled_oscillators_veer_where_and_as_closely_as_in_closed_form(couplin
     assert e.omega == pytest.approx(MEETING, rel=1e-6)
     assert e.gap == pytest.approx(upper - lower, rel=2e-3)  # 2κ in squares, halved by the mean frequency
     assert e.frequency == pytest.approx(np.sqrt(EDGE), rel=1e-3)
-    np.testing.assert_array_equal(tracks.place, np.tile([0, 1], (len(tracks.omega), 1)))
+    np.testing.assert_array_equal(tracks.mode_index, np.tile([0, 1], (len(tracks.omega), 1)))
     assert not tracks.doubts
 
 
@@ -60,7 +60,7 @@ def test_a_veering_exchanges_the_shapes_the_closed_form_says() -> None:
     half = [0.5 * np.arctan2(2 * coupling, EDGE - FLAP - 2.0 * omega**2) for omega in e.window]
     assert e.exchanged == pytest.approx(np.sin(half[1] - half[0]) ** 2, abs=1e-9)
     assert e.exchanged > 0.8
-    assert e.whole
+    assert e.complete
 
 
 def test_uncoupled_oscillators_cross_without_a_step_more_than_asked_for() -> None:

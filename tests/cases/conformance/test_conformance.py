@@ -35,7 +35,7 @@ def test_ours_conform(name: str) -> None:
     assert all(o.reason for o in outcomes if o.verdict != "pass")
     passed = {str(o.check) for o in outcomes if o.verdict == "pass"}
     assert passed >= {"declarations", "cantilever at rest", "counts", "repeatable", "shapes", "units"}
-    assert ("refusals" in passed) == any(code.unsupported(p.having) for p in PROPERTIES)
+    assert ("refusals" in passed) == any(code.unsupported(p.blade) for p in PROPERTIES)
 
 
 @dataclass

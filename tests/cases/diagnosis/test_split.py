@@ -18,9 +18,9 @@ RIGHT = lines((4.0, 7.0), (1.8, 0.4))
 
 def test_offset_and_slope_are_those_of_the_numbers() -> None:
     flap, edge = split(NAMES, SPEEDS, lines((3.9, 7.0), (1.8, 0.5)), RIGHT)
-    assert (flap.rest, flap.slope, flap.slope_reference) == pytest.approx((3.9, 1.8, 1.8), rel=1e-6)
+    assert (flap.at_rest, flap.slope, flap.slope_reference) == pytest.approx((3.9, 1.8, 1.8), rel=1e-6)
     assert flap.offset == pytest.approx(-0.025, rel=1e-6)
-    assert (edge.rest, edge.slope) == pytest.approx((7.0, 0.5), rel=1e-6)
+    assert (edge.at_rest, edge.slope) == pytest.approx((7.0, 0.5), rel=1e-6)
 
 
 def test_a_mode_is_followed_where_frequencies_cross() -> None:

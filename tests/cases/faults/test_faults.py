@@ -27,7 +27,7 @@ def test_the_table_is_large_and_names_are_unique() -> None:
     areas = Counter(f.area for f in ALL)
     assert set(areas) == {"solver", "adapter", "pairing", "uncertainty", "verdict", "reader"}
     assert len(FAST) == 7
-    assert all(f.what and f.size and f.seams for f in ALL)
+    assert all(f.description and f.size and f.seams for f in ALL)
     assert all(f.trial or f.blinds for f in ALL)
     assert all(f.blinds in BY_NAME for f in ALL if f.blinds)
 

@@ -115,14 +115,14 @@ def test_a_cell_that_was_not_there_counts_if_it_is_a_miss(verdict) -> None:
 def test_a_code_that_answers_no_more_counts(verdict) -> None:
     silent = replace(CELL, code="other", mode=0, family="", value=None, verdict=verdict)
     comparison = compared(replace(BEFORE, cells=(*BEAM, silent)))
-    assert [(g.point.code, g.point.mode, g.instead) for g in comparison.gone] == [
+    assert [(g.point.code, g.point.mode, g.replacement) for g in comparison.gone] == [
         ("other", k, verdict) for k in (1, 2, 3)
     ]
     assert not comparison.passed()
 
 
 def test_a_case_that_vanished_counts_and_one_that_never_answered_does_not() -> None:
-    assert [g.instead for g in compared(replace(BEFORE, cells=BEAM)).gone] == [None] * 3
+    assert [g.replacement for g in compared(replace(BEFORE, cells=BEAM)).gone] == [None] * 3
     silent = replace(BEFORE, cells=(*BEAM, replace(CELL, code="other", mode=0, value=None, verdict="not run")))
     assert compared(replace(BEFORE, cells=BEAM), silent).passed()
     installed = compared(BEFORE, silent)

@@ -61,7 +61,7 @@ def test_calculix_substructure_file() -> None:
     ends = [
         ties.average(model, np.flatnonzero(model.points[:, 0] == x), at(x), f"{x} m", np.ones(12)) for x in (0.0, 0.2)
     ]
-    k = between(condensation.condense(model, ends).stiffness, ties.seen(*ends), "brick")
+    k = between(condensation.condense(model, ends).stiffness, ties.relative_pose(*ends), "brick")
     f = np.linalg.inv(k)
     assert 0.2 / f[0, 0] == pytest.approx(7e10 * 0.01, rel=1e-9)
 

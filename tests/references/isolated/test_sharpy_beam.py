@@ -26,7 +26,7 @@ TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
 TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
 TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
 TIP_MASS[[3, 5], [3, 5]] += 10.0
-ARCS = {p.name: p.having for p in PROPERTIES if p.name in ("sweep", "prebend")}
+ARCS = {p.name: p.blade for p in PROPERTIES if p.name in ("sweep", "prebend")}
 
 
 def core(blade: Blade, omega: float, count: int = 5) -> Array:

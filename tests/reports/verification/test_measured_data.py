@@ -100,7 +100,7 @@ def test_the_gate_counts_nothing_about_them() -> None:
 def test_an_answer_that_is_called_a_measurement_is_gone() -> None:
     renamed = replace(PLAIN.cells[0], role="measured", verdict="measured")
     comparison = gate.compare(entry(PLAIN), entry(replace(PLAIN, cells=(renamed, PLAIN.cells[1]))))
-    assert [(g.point.code, g.instead) for g in comparison.gone] == [("alpha", "measured")]
+    assert [(g.point.code, g.replacement) for g in comparison.gone] == [("alpha", "measured")]
     assert not comparison.passed()
 
 
