@@ -92,6 +92,7 @@ def test_the_motions_used_at_first_do_not_matter() -> None:
     assert (few.confidence > 0.5).all()
 
 
+@pytest.mark.slow
 def test_a_mode_has_the_frequency_of_the_motion_that_names_it() -> None:
     """Other frequencies of a mode differ by multiples of Ω, and can move more mass: the lines do not jump between them."""
     full_machine = machine(small(blades=2), SMALL)
