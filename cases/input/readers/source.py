@@ -155,6 +155,12 @@ class Mount:
         """Names of the missing values among hub radius, precone and pitch."""
         return tuple(name for name in ("hub_radius", "precone", "pitch") if getattr(self, name) is None)
 
+    @property
+    def assumption(self) -> str:
+        """What is assumed for the missing values, and the options that state them; empty if none is missing."""
+        options = ", ".join(f"--{name.replace('_', '-')}" for name in self.unstated)
+        return f"{', '.join(self.unstated)} taken as 0 (options: {options})" if options else ""
+
 
 OPENFAST_AXES = (
     "OpenFAST: x downwind, y to the trailing edge, z along the blade, twist and pitch positive with the leading edge "

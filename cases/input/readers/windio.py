@@ -79,8 +79,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     blade = beamdyn.assemble(blade_name, path, _axis(layout), eta, stiffness, mass, mounted)
     blade = replace(blade, stiffness=rigid(blade.stiffness, *zero_strains), tip_mass=_tip(layout.elastic))
     notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
-    if mounted.unstated:
-        notes.append(f"{', '.join(mounted.unstated)} taken as 0")
+    if mounted.assumption:
+        notes.append(mounted.assumption)
     if layout.version == 1 and layout.degrees == 1.0:
         notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
     if zero_strains:

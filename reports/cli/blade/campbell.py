@@ -47,6 +47,9 @@ from . import campbell_options as options
 from .subjects import Subject, changed, single
 from .subjects import subjects as find_subjects
 
+BLADE_MODES, TURBINE_MODES = 6, 12
+"""Default numbers of modes."""
+
 
 def command(
     blade: str,
@@ -55,7 +58,7 @@ def command(
     rpm: str | None = None,
     omega: str | None = None,
     out: Annotated[Path, Parameter(name=["--out", "-o"])] = Path("southwell-campbell"),
-    modes: NumberOfModes = 6,
+    modes: NumberOfModes | None = None,
     per_rev: str = "1:6",
     operating: str | None = None,
     margin: str = "10%",
@@ -100,7 +103,7 @@ def command(
     out
         Output folder; one sub-folder per blade.
     modes
-        Number of modes, from the lowest; twice as many for a turbine.
+        Number of modes, from the lowest. Default: 6, for a turbine 12.
     per_rev
         Excitation orders n (nP): `1:6` or `1,2,3,6`.
     operating
@@ -169,7 +172,7 @@ def command(
         )
         turbine = MachineRequest(
             speeds=(),
-            modes=2 * modes,
+            modes=modes or TURBINE_MODES,
             per_rev=options.per_rev(per_rev),
             operating=options.operating(operating, speed_option[1], speed_option[0])
             if operating and speed_option
@@ -188,7 +191,7 @@ def command(
         speeds, units = speed_option or (subject.speeds, subject.units)
         request = CampbellRequest(
             speeds=tuple(speeds),
-            modes=modes,
+            modes=modes or BLADE_MODES,
             per_rev=options.per_rev(per_rev),
             operating=options.operating(operating, units, speeds) if operating else None,
             margin=required_margin(margin, "--margin"),

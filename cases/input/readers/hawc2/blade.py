@@ -86,9 +86,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     if file_mount is not None:
         angles = ", ".join(f"{name} {np.degrees(getattr(file_mount, name)):.6g}°" for name in ("precone", "pitch"))
         notes.append(f"orientation of the htc's bodies: hub_radius {file_mount.hub_radius:.6g} m, {angles}")
-    unstated = mounted.unstated
-    if unstated:
-        notes.append(f"{', '.join(unstated)} taken as 0: in HAWC2 the orientation of the bodies defines them")
+    if mounted.assumption:
+        notes.append(f"{mounted.assumption}: in HAWC2 the orientation of the bodies defines them")
     try:
         blade = Blade(
             name=path.stem,
@@ -107,7 +106,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     return Reading(
         blade,
         Source(NAME, files, AXES, tuple(notes), unused_values),
-        unstated=unstated,
+        unstated=mounted.unstated,
     )
 
 

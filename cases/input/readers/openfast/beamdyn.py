@@ -97,8 +97,8 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     ]
     if main is None:
         notes.append("no main file: straight, untwisted")
-    if hub_data is None and mounted.unstated:
-        notes.append(f"no ElastoDyn main file: {', '.join(mounted.unstated)} taken as 0")
+    if hub_data is None and mounted.assumption:
+        notes.append(f"no ElastoDyn main file: {mounted.assumption}")
     axes = f"{OPENFAST_AXES}; matrices about the key points' curve, where they stay"
     unused_values = (
         *_damping(text),

@@ -216,5 +216,5 @@ def _notes(factors: dict[str, float], main: Path | None, mounted: Mount, columns
     if main is not None:
         out.append("tower, nacelle, hub and drive train of the main file are not part of the blade")
     if main is None:
-        out.append("no main file" + (f": {', '.join(mounted.unstated)} taken as 0" if mounted.unstated else ""))
+        out.append("no main file" + (f": {mounted.assumption}" if mounted.assumption else ""))
     return tuple(out)

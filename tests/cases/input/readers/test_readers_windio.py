@@ -139,7 +139,7 @@ def test_the_cone_leans_away_from_the_tower(tmp_path: Path) -> None:
     assert readers.read(tmp_path / "b.yaml", Mount(precone=0.1, hub_radius=3.0)).precone == 0.1
     bare = readers.reading(written(tmp_path / "b.yaml", put(two, "components.hub", None)))
     assert (bare.blade.precone, bare.blade.hub_radius) == (0.0, 0.0)
-    assert "hub_radius, precone, pitch taken as 0" in bare.source.notes
+    assert "hub_radius, precone, pitch taken as 0 (options: --hub-radius, --precone, --pitch)" in bare.source.notes
 
 
 def test_stiffness_that_is_left_out_is_rigid_and_said(tmp_path: Path) -> None:

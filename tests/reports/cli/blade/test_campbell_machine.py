@@ -22,7 +22,7 @@ def southwell(line: str, capsys: pytest.CaptureFixture[str]) -> tuple[int, str, 
 
 def test_a_deck_becomes_a_diagram_of_the_turbine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path, out = deck(tmp_path), tmp_path / "out"
-    line = f"campbell {path} --rpm 0:24:6 --modes 4 --operating 6:24 --strict --margin 90% -o {out}"
+    line = f"campbell {path} --rpm 0:24:6 --modes 8 --operating 6:24 --strict --margin 90% -o {out}"
     status, output, err = southwell(line, capsys)
     assert (status, err) == (1, "")  # margins are violated
     assert output.startswith("small.fst: the whole turbine on rigid ground")
@@ -50,7 +50,7 @@ def test_one_blade_of_a_turbine_on_request(tmp_path: Path, capsys: pytest.Captur
 
 def test_an_htc_becomes_a_diagram_of_the_turbine(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = htc_decks.htc(tmp_path)
-    status, output, err = southwell(f"campbell {path} --modes 2 --rpm 0,20 -o {tmp_path / 'out'}", capsys)
+    status, output, err = southwell(f"campbell {path} --modes 4 --rpm 0,20 -o {tmp_path / 'out'}", capsys)
     assert (status, err) == (0, "")
     assert output.startswith("small.htc: the whole turbine on rigid ground")
     assert "taken as rigid, with all mass: towertop below 0.001 %" in output
