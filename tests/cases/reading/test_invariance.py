@@ -166,7 +166,8 @@ def test_a_change_ends_a_run_with_status_1() -> None:
         ordinal=1,
     )
     row = partial(PropertyCheck, "wing", "southwell", "1", "invariance")
-    altered = row("stations split", 5.1, 5.0, "rad/s", 0.02, 1e-8, "fail", "stations split: mode 1 changes by +2.00 %")
+    reason = "stations split: mode 1 changes by +2.00 %"
+    altered = row("stations split", 1e-8, "fail", reason, value=5.1, reference=5.0, unit="rad/s", difference=0.02)
     run = Run((cell,), property_checks=(altered,))
     assert summary.status(run) == FAILED
     assert evidence.verdict(run) == "No: frequencies change in 1 other description of the same blade."
