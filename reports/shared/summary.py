@@ -82,7 +82,7 @@ def status(run: Run) -> int:
 
 def worst_verdict(cells: Iterable[Cell]) -> Verdict:
     """The worst verdict of the cells."""
-    return min((c.verdict for c in cells), key=WORST_FIRST.index)
+    return next(iter(counts(cells)))
 
 
 def size(cell: Cell) -> float | None:
@@ -111,7 +111,7 @@ def worst(cells: Iterable[Cell]) -> Cell | None:
 def counts(cells: Iterable[Cell]) -> Counter[Verdict]:
     """Number of cells by verdict, the worst first."""
     by_verdict = Counter(c.verdict for c in cells)
-    return Counter({v: by_verdict[v] for v in sorted(by_verdict, key=WORST_FIRST.index)})
+    return Counter[Verdict]({v: by_verdict[v] for v in WORST_FIRST if v in by_verdict})
 
 
 def tally(cells: Iterable[Cell]) -> str:
