@@ -29,7 +29,7 @@ CONSTANTS = {
 }
 """Names and values of constant ratios of a program's frequencies to the solver's."""
 
-LARGE = 0.2
+LARGE = 0.1
 """Smallest difference (root mean square of logarithms) that arithmetic may explain."""
 
 REMAINS = 0.2

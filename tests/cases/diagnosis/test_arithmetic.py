@@ -40,6 +40,13 @@ def test_exchanged_modes_are_named_with_their_labels() -> None:
     assert name(REFERENCE[:, [0, 1, 3, 2]], labels).endswith("flapwise 2 is edgewise 2, edgewise 2 is flapwise 2")
 
 
+def test_exchanged_modes_of_similar_frequency_are_named() -> None:
+    """Two of four modes whose frequencies differ by a quarter."""
+    reference = np.array([[4.0, 5.0, 12.0, 25.0], [5.0, 6.2, 13.0, 26.0]])
+    exchanged = reference[:, [1, 0, 2, 3]] * (1 + 0.002 * np.array([1, -1, 0, 1]))
+    assert arithmetic(exchanged, reference, NUMBERS, list(reference)).name == "modes in another order: 1 is 2, 2 is 1"
+
+
 def test_conjugate_pairs_and_halves_are_recognised() -> None:
     assert name(np.array([row[[0, 0, 1, 1]] for row in EVERY])) == "every mode twice (conjugate pairs)"
     assert name(np.array([row[[0, 2, 4, 6]] for row in EVERY])) == "half of the modes: the 1st, 3rd, …"
