@@ -184,6 +184,7 @@ def command(
     measurements.check(files, data_uncertainty, None)
     subjects = changed(find_subjects(blade, mount), [parse(text) for text in changes])
     baseline = single(against, mount) if against else None
+    count = modes or BLADE_MODES
     margins_kept = True
     for subject in subjects:
         if not (speed_option or subject.speeds):
@@ -191,7 +192,7 @@ def command(
         speeds, units = speed_option or (subject.speeds, subject.units)
         request = CampbellRequest(
             speeds=tuple(speeds),
-            modes=modes or BLADE_MODES,
+            modes=count,
             per_rev=options.per_rev(per_rev),
             operating=options.operating(operating, units, speeds) if operating else None,
             margin=required_margin(margin, "--margin"),
@@ -209,12 +210,12 @@ def command(
             confirmed = confirmed_by(diagram, subject, units)
             extra.append(confirmation_table.sheet(diagram, confirmed, units))
         if baseline:
-            changes_of_modes = blade_changes(subject.blade, baseline.blade, speeds, modes, elements)
+            changes_of_modes = blade_changes(subject.blade, baseline.blade, speeds, count, elements)
             extra.append(changes_table.sheet(changes_of_modes, baseline.blade.name, units))
         facts = (*options.blade_alone(blade), *options.loads(azimuth, tilt, load))
         for text in facts:
             output().print(text, style="bold", markup=False, soft_wrap=True)
-        doubts = interpolation.warnings(subject.blade, modes)
+        doubts = interpolation.warnings(subject.blade, count)
         _show(diagram, units, subject, extra, doubts)
         margins_kept &= tables.margins_kept(diagram)
         origin = InputOrigin((*facts, *subject.about, *doubts), subject.files, not_used.lines(subject.unused))

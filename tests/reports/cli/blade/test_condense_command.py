@@ -204,7 +204,7 @@ def test_what_is_kept_is_the_model(whole: condensed.Condensed, tmp_path: Path) -
         ("1.1, 1.3]", "1.1]", r"sections\[4\]: 360 freedoms .* lie up to 0.2 m beyond it"),
         ("[0.3, 0.5, 0.7", "[0.3, 0.7, 0.5", r"sections\[2\]: 0.5 m is not beyond 0.7 m"),
         ("sections =", 'tie = "rigid"\nsections =', "section '0.5 m': a rigid tie prevents warping"),
-        ("sections =", 'rotor = "x"\nsections =', "rotor: along the span"),
+        ("sections =", 'rotor = "x"\nsections =', "rotor: parallel to the span: give another direction"),
         ("sections =", "span = [0, 0, 0]\nsections =", r"span: \[0.0, 0.0, 0.0\]: not a direction"),
         ("sections =", 'tie = "glued"\nsections =', "tie: 'glued': not one of its values: give one of average, rigid"),
     ],
