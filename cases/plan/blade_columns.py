@@ -57,9 +57,9 @@ def columns(case: Case, variant: Variant, codes: Sequence[Description], limits: 
             Column(table.name, relevant_effects(table.series.effects, blade), head, work, origin, due="somewhere")
         )
     takers = [code for code in codes if code.blades]
-    for code in codes if not takers else []:
-        head = Head(variant.name, code.name, code.version or "", "code", target)
-        out.append(declined(head, ALL_EFFECTS, "the code takes mechanisms, not blades"))
+    if not takers:
+        heads = [Head(variant.name, code.name, code.version or "", "code", target) for code in codes]
+        out += [declined(head, ALL_EFFECTS, "the code takes mechanisms, not blades") for head in heads]
     for code in takers:
         head = Head(variant.name, code.name, code.version or "", "code", target, code.shares, code.motions)
         out.append(replace(_code(head, code, blade, limits), origin=_origin(code, blade)))

@@ -243,10 +243,8 @@ def _motion(machine: Machine, a: Assembled, vectors: Complex) -> Motion:
     blade = displacements(a.shapes[1], a.blade_links, a.blade.vectors)
     blades = np.einsum("nrm,rqi->mnqi", vectors[a.blades], blade)
     for angle, twist in zip(a.teeter, machine.turbine.hinge.T, strict=True):
-        displacement = twist[:3] + np.cross(
-            twist[3:], a.shapes[1].nodes[:, :3, 3]
-        )  # of blade 0; blade 1 moves the other way
-        blades[:, 1] += vectors[angle][:, None, None] * displacement
+        displacement = twist[:3] + np.cross(twist[3:], a.shapes[1].nodes[:, :3, 3])
+        blades[:, 1] += vectors[angle][:, None, None] * displacement  # of blade 0; blade 1 moves the other way
     return Motion(
         tower=a.shapes[0].nodes[:, :3, 3],
         shaft=a.shapes[0].nodes[-1] @ machine.turbine.shaft,

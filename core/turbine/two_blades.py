@@ -110,7 +110,7 @@ def _lowest(
         ):
             return None
         out.append(full)
-    return out
+    return sorted(out, key=lambda mode: mode[0].imag)
 
 
 def _led(system: Periodic, half_turn: Array, value: complex, harmonics: Complex) -> tuple[complex, Complex] | None:

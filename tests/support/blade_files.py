@@ -48,7 +48,7 @@ def samples() -> tuple[dict[str, Any], dict[str, Any]]:
     grid = np.linspace(0, 1, len(points)).tolist()
     x, y, z, twist = points.T
     axis = {c: {"grid": grid, "values": v.tolist()} for c, v in zip("xyz", (x, y, z), strict=True)}
-    one = {
+    version_1 = {
         "name": "invented",
         "assembly": {"rotor_orientation": "Upwind"},
         "components": {
@@ -78,7 +78,7 @@ def samples() -> tuple[dict[str, Any], dict[str, Any]]:
         "i_plr": mass[:, 5, 5],
         "i_cp": -mass[:, 3, 4],
     }
-    two = {
+    version_2 = {
         "windIO_version": "2.0",
         "name": "invented",
         "components": {
@@ -95,7 +95,7 @@ def samples() -> tuple[dict[str, Any], dict[str, Any]]:
             "hub": {"diameter": 3.0, "cone_angle": float(np.degrees(0.04))},
         },
     }
-    return one, two
+    return version_1, version_2
 
 
 def written(path: Path, data: dict[str, Any]) -> Path:

@@ -86,6 +86,6 @@ FAULTS: dict[str, Seam] = {
         "_worst",
         lambda right: lambda standings: min(standings, key=STANDINGS.index, default="agrees"),
     ),
-    "no number of groups is required": (witnesses, "groups", lambda right: lambda found: [tuple(found)] * 9),
+    "no number of groups is required": (witnesses, "groups", lambda right: lambda groups: [tuple(groups)] * 9),
 }
 """What a wrong program does, and the seam of the fault."""

@@ -45,10 +45,10 @@ def study(folder: Path, given: str | None = None, **options: Any) -> Study:
     return read(path)[0]
 
 
-def solved(one: Study, path: Path, executor: Executor | None = None, **options: Any) -> list[bytes]:
+def solved(definition: Study, path: Path, executor: Executor | None = None, **options: Any) -> list[bytes]:
     """The lines of a study's file after a run, the header and sorted rows."""
-    with StudyJournal(path, header(one)) as journal:
-        run(one, executor or Serial(), journal, **options)
+    with StudyJournal(path, header(definition)) as journal:
+        run(definition, executor or Serial(), journal, **options)
     return lines(path)
 
 
@@ -84,6 +84,6 @@ def deadly(task: Task) -> bytes:
     return b""
 
 
-def tasks_of(one: Study) -> list[Task]:
+def tasks_of(definition: Study) -> list[Task]:
     """All tasks of a study."""
-    return [task for _, task in tasks(one, range(header(one).tasks))]
+    return [task for _, task in tasks(definition, range(header(definition).tasks))]

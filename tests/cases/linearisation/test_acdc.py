@@ -58,8 +58,8 @@ def eigenvalues(azimuth_set: AzimuthSet) -> NDArray[np.complex128]:
     total = np.zeros((len(order), len(order)))
     for A, psi, file in zip(azimuth_set.A, azimuth_set.azimuths, azimuth_set.files, strict=True):
         angles, omega = psi + 2 * np.pi * np.arange(3) / 3, file.rotor_speed
-        c, s, one = np.cos(angles), np.sin(angles), np.ones(3)
-        t, t2, t3 = (np.stack(columns, axis=-1) for columns in ((one, c, s), (0 * one, -s, c), (0 * one, -c, -s)))
+        c, s, ones = np.cos(angles), np.sin(angles), np.ones(3)
+        t, t2, t3 = (np.stack(columns, axis=-1) for columns in ((ones, c, s), (0 * ones, -s, c), (0 * ones, -c, -s)))
 
         def spread(fixed: Array, small: Array, count: int) -> Array:
             return np.asarray(block_diag(fixed, *[small] * count))

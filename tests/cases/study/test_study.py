@@ -103,11 +103,11 @@ class Stopping(Serial):
     """Breaks at one of its tasks."""
 
     def __init__(self, at: int) -> None:
-        self.left = at
+        self.remaining = at
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
-        self.left -= 1
-        if self.left < 0:
+        self.remaining -= 1
+        if self.remaining < 0:
             future: Future[Any] = Future()
             future.set_exception(BrokenExecutor("killed"))
             return future

@@ -113,7 +113,7 @@ def second_differences(f: Callable[[Array], float], n: int) -> Array:
     """(n, n) of a function of (n,) at zero."""
     h = 1e-3 * np.eye(n)
     signs = [(a, b) for a in (1, -1) for b in (1, -1)]
-    results = [[sum(a * b * f(a * one + b * other) for a, b in signs) for other in h] for one in h]
+    results = [[sum(a * b * f(a * row + b * column) for a, b in signs) for column in h] for row in h]
     return np.array(results) / 4e-6
 
 
@@ -154,10 +154,10 @@ class TestFrequencies:
         blade = replace(curved(), tip_mass=lump, pitch=pitch, precone=0.2)
         np.testing.assert_allclose(frequencies(blade, omega, 40, 8), core(blade, omega, 8), rtol=1e-5)
 
-    @pytest.mark.parametrize("one", PROPERTIES, ids=lambda p: p.name)
-    def test_each_property_agrees_with_core(self, one) -> None:
-        result = frequencies(one.blade, one.omega, 48, 5)
-        np.testing.assert_allclose(result, core(one.blade, one.omega, 5), rtol=1e-5)
+    @pytest.mark.parametrize("problem", PROPERTIES, ids=lambda p: p.name)
+    def test_each_property_agrees_with_core(self, problem) -> None:
+        result = frequencies(problem.blade, problem.omega, 48, 5)
+        np.testing.assert_allclose(result, core(problem.blade, problem.omega, 5), rtol=1e-5)
 
     def test_a_kinked_blade_agrees_with_core(self) -> None:
         s = np.array([0.0, 3.0, 6.0])

@@ -56,10 +56,10 @@ def test_help_shows_the_parameters_that_a_user_types() -> None:
     assert [f for f in public if "numpy._typing" in pydoc.render_doc(f)] == []
     text = pydoc.plain(pydoc.render_doc(southwell.modes)).replace("'", "")
     assert "modes(blade: Blade, omega: float | None = None, *, rpm" in text
-    for one, many in ((solve.modes, solve.sweep), (solve.mesh_modes, solve.mesh_sweep)):
-        output = list(inspect.signature(one).parameters)
-        assert output == ["blade", "omega", *list(inspect.signature(many).parameters)[2:]]
-        assert f"arguments and errors as for ``{many.__name__}``" in pydoc.render_doc(one)
+    for single, sweep in ((solve.modes, solve.sweep), (solve.mesh_modes, solve.mesh_sweep)):
+        output = list(inspect.signature(single).parameters)
+        assert output == ["blade", "omega", *list(inspect.signature(sweep).parameters)[2:]]
+        assert f"arguments and errors as for ``{sweep.__name__}``" in pydoc.render_doc(single)
 
 
 def test_a_plot_has_every_mode_asked_for() -> None:

@@ -102,7 +102,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         )
     except BladeError as error:
         raise CaseError(f"{columns.text.path}: {error}") from error
-    unused_values = bodies.left(body) if body is not None else ()
+    unused_values = bodies.unused_quantities(body) if body is not None else ()
     return Reading(
         blade,
         Source(NAME, files, AXES, tuple(notes), unused_values),

@@ -157,7 +157,7 @@ UNUSED = {
 """Commands of a main_body that affect its modes and are not used: unit and reason."""
 
 
-def left(body: Body, masses: bool = True) -> tuple[Unused, ...]:
+def unused_quantities(body: Body, masses: bool = True) -> tuple[Unused, ...]:
     """Unused non-zero quantities of a body; for a concentrated mass (node, x, y, z, mass, …) the mass, if they are unused."""
     out: list[Unused] = []
     for command in body:

@@ -140,7 +140,7 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
         between(r, stiffness, s),
         between(r, mass, s),
         masses,
-        (*bodies.left(body, masses=False), *products),
+        (*bodies.unused_quantities(body, masses=False), *products),
     )
 
 

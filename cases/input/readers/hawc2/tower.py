@@ -34,7 +34,7 @@ def read(path: Path) -> tuple[Tower, Source]:
         "clamped at the base, without weight",
         "nacelle, shaft and rotor are other bodies of the htc, which are not part of the tower",
     )
-    return Tower(tower), Source(NAME, (path, file), AXES, notes, bodies.left(body))
+    return Tower(tower), Source(NAME, (path, file), AXES, notes, bodies.unused_quantities(body))
 
 
 def beam(htc: Text, name: str, body: bodies.Body) -> tuple[Blade, Path]:

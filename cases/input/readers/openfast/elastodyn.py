@@ -34,7 +34,7 @@ LAYOUT = elastodyn_table.Layout(
     multipliers=("AdjBlMs", "AdjFlSt", "AdjEdSt"),
     columns=("BlFract", "PitchAxis", "StrcTwst", "BMassDen", "FlpStff", "EdgStff"),
     needed=NEEDED,
-    known=(*USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS),
+    spellings=(*USED, *fast7_offsets.COLUMNS, *elastodyn_unused.COLUMNS),
 )
 MAX_BYTES = 1_000_000
 """Maximum size of a main file, bytes: larger files in the folder of a blade are not searched."""

@@ -18,14 +18,14 @@ class Layout:
         multipliers: names of the multipliers.
         columns: of a table without a row of names; the first is the position of the station.
         needed: columns that no table may lack.
-        known: names of all columns that are known, in their spelling.
+        spellings: names of all columns that occur, in their spelling.
     """
 
     count: str
     multipliers: tuple[str, ...]
     columns: tuple[str, ...]
     needed: tuple[str, ...]
-    known: tuple[str, ...]
+    spellings: tuple[str, ...]
 
 
 def read(text: Text, layout: Layout) -> tuple[Table, dict[str, float]]:
@@ -46,7 +46,7 @@ def read(text: Text, layout: Layout) -> tuple[Table, dict[str, float]]:
     head = next((k for k in range(first, len(text.lines)) if _first_word(text.lines[k]) == position), None)
     columns = layout.columns
     if head is not None:
-        spelling = {name.lower(): name for name in layout.known}
+        spelling = {name.lower(): name for name in layout.spellings}
         columns = tuple(spelling.get(name.lower(), name) for name in tokens(text.lines[head]))
         if missing := [name for name in layout.needed if name not in columns]:
             needed = ", ".join(layout.needed)

@@ -122,10 +122,12 @@ def test_line_ends_and_fortran_exponents_are_read(tmp_path: Path) -> None:
 
 
 def test_twist_in_degrees_in_windio_1_is_noticed_and_said(tmp_path: Path) -> None:
-    one, two = samples()
-    expected = readers.read(written(tmp_path / "c.yaml", one))
-    one["components"]["blade"]["outer_shape_bem"]["twist"] = two["components"]["blade"]["outer_shape"]["twist"]
-    reading = readers.reading(written(tmp_path / "b.yaml", one))
+    version_1, version_2 = samples()
+    expected = readers.read(written(tmp_path / "c.yaml", version_1))
+    version_1["components"]["blade"]["outer_shape_bem"]["twist"] = version_2["components"]["blade"]["outer_shape"][
+        "twist"
+    ]
+    reading = readers.reading(written(tmp_path / "b.yaml", version_1))
     assert_same(reading.blade, expected, 1e-13)
     assert any("taken for degrees" in note for note in reading.source.notes)
 
@@ -163,14 +165,14 @@ def test_a_point_mass_at_the_tip_is_the_tip_mass(tmp_path: Path) -> None:
 
 
 def test_grids_of_stiffness_and_mass_may_differ(tmp_path: Path) -> None:
-    one = samples()[0]
-    expected = readers.read(written(tmp_path / "c.yaml", one))
-    rows = one["components"]["blade"]["elastic_properties_mb"]["six_x_six"]["inertia_matrix"]
+    version_1 = samples()[0]
+    expected = readers.read(written(tmp_path / "c.yaml", version_1))
+    rows = version_1["components"]["blade"]["elastic_properties_mb"]["six_x_six"]["inertia_matrix"]
     middle = (0.5 * np.array(rows["values"][0]) + 0.5 * np.array(rows["values"][1])).tolist()
     rows["grid"].insert(1, rows["grid"][1] / 2)
     rows["values"].insert(1, middle)
-    one["components"]["blade"]["elastic_properties_mb"]["six_x_six"]["stiff_matrix"]["grid"] = [0, 0.4, 1]
-    blade = readers.read(written(tmp_path / "b.yaml", one))
+    version_1["components"]["blade"]["elastic_properties_mb"]["six_x_six"]["stiff_matrix"]["grid"] = [0, 0.4, 1]
+    blade = readers.read(written(tmp_path / "b.yaml", version_1))
     assert len(blade.stations) == len(expected.stations) + 1
     k = [int(np.abs(blade.stations - s).argmin()) for s in expected.stations]
     for name in ("stiffness", "mass", "twist", "curve"):
