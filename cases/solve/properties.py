@@ -3,6 +3,7 @@
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
+from itertools import chain
 from math import isfinite
 
 from ...core.blade import Blade
@@ -83,8 +84,9 @@ class Weighing:
 def _weighed(case: str, blade: Blade, stations: Stations, code: Description, limits: Limits) -> list[PropertyCheck]:
     """The rows of a code's model of a blade; ``limits`` are those of each model."""
     version, models = code.version or "", list[Fingerprint]()
-    for elements in code.levels:
-        (model,) = fingerprints(code.asked, blade, [elements], limits, version)
+    # nearly every code needs two meshes and few need more; each question starts a process
+    questions = (code.levels[:2], code.levels[2:])
+    for model in chain.from_iterable(fingerprints(code.asked, blade, q, limits, version) for q in questions):
         if not isinstance(model, Fingerprint) and len(models) == 2:
             break  # a finer mesh is not within the limits: the verdict is that of these two
         if not isinstance(model, Fingerprint):

@@ -165,6 +165,7 @@ def _settings(exu: Any, full: bool) -> Any:
     settings = exu.SimulationSettings()
     settings.solution.file.write = False
     settings.staticSolver.verboseMode = 0
+    settings.staticSolver.adaptiveStep = False  # it scales loads; here all forces are elastic or of inertia
     solvers = exu.LinearSolverType
     settings.linearSolver.solverType = solvers.EigenDense if full else solvers.EigenSparse
     settings.staticSolver.newton.useModifiedNewton = True  # a Jacobian takes far longer than an iteration
