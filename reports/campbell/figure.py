@@ -13,10 +13,11 @@ from ...cases.campbell.diagram import Campbell
 from ...cases.plan.user_results import UserResults
 from ...core.participation import FAMILIES
 from ..shared.certain import certain
+from ..shared.rays import rays
 from ..shared.style import MUTED, WIDTH, key, label_ends, plot_style, title
 from ..shared.units import Units
 from . import points
-from .marks import DASHES, band, band_label, blend, legend, marks, near, rays
+from .marks import DASHES, band, band_label, blend, legend, marks, near
 
 PURE = 0.85
 """Smallest energy fraction at which a line has its family's dashes; below it, a solid line of blended colours."""
@@ -57,7 +58,7 @@ def draw(diagram: Campbell, units: Units, heading: str, user_results: Sequence[U
             _panel(axes, diagram, units, limits)
             points.draw(axes, user_results, diagram.blade.name, units)
         lowest, highest = panels[0], panels[-1]
-        rays(lowest, diagram, units)
+        _rays(lowest, diagram, units)
         band_label(highest, diagram, units)
         highest.annotate(
             f"{units.frequency} at {diagram.request.speeds[-1] * units.speeds:.4g} {units.speed}",
@@ -84,10 +85,16 @@ def lines(axes: Axes, diagram: Campbell, units: Units) -> Axes:
     """Draw modes, rays of n per revolution and the operating range on given axes, on one scale; return the axes."""
     top = 1.06 * float(np.nanmax(diagram.tracks.frequencies)) * units.frequencies
     _panel(axes, diagram, units, (0.0, top))
-    rays(axes, diagram, units)
+    _rays(axes, diagram, units)
     axes.set_xlabel(units.speed_label)
     axes.set_ylabel(units.frequency_label)
     return axes
+
+
+def _rays(axes: Axes, diagram: Campbell, units: Units) -> None:
+    request, tracks = diagram.request, diagram.tracks
+    veerings = [(e.omega, e.frequency) for e in diagram.encounters if e.kind == "veering"]
+    rays(axes, units, request.per_rev, tracks.omega, tracks.frequencies, request.operating, veerings)
 
 
 def _ranges(diagram: Campbell, units: Units) -> list[tuple[float, float]]:

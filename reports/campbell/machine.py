@@ -9,8 +9,9 @@ from matplotlib.figure import Figure
 from ...cases.campbell.machine import MachineDiagram, ModeLine
 from ...cases.input import atomic
 from ..shared.certain import certain, relative
+from ..shared.rays import rays
 from ..shared.sheets import TOO_NEAR, Sheet, markdown
-from ..shared.style import COLOURS, MUTED, WIDTH, plot_style, save, title
+from ..shared.style import COLOURS, WIDTH, label_ends, plot_style, save, title
 from ..shared.units import Units
 from . import cover
 from .cover import InputOrigin
@@ -124,46 +125,22 @@ def draw(diagram: MachineDiagram, units: Units, heading: str) -> Figure:
     with plot_style():
         figure = Figure((WIDTH, 5.9))
         axes = figure.add_axes((0.07, 0.1, 0.62, 0.78))
-        speeds = diagram.omega * units.speeds
-        top = 1.05 * max(float(line.frequencies.max()) for line in diagram.lines) * units.frequencies
+        speeds, request = diagram.omega * units.speeds, diagram.request
+        frequencies = np.array([line.frequencies for line in diagram.lines])
         for k, line in enumerate(diagram.lines):
             dashes = next((d for word, d in _DASHES.items() if word in line.name), "-")
             axes.plot(speeds, line.frequencies * units.frequencies, color=COLOURS[k % 8], ls=dashes, lw=1.5)
-        slope = units.frequencies / units.speeds
-        for n in diagram.request.per_rev:
-            end = min(float(speeds[-1]), top / (n * slope))
-            axes.plot([speeds[0], end], [n * slope * speeds[0], n * slope * end], color="#b0b0b0", lw=0.7, zorder=1)
-            axes.annotate(f"{n}P", (end, n * slope * end), (0, 3), textcoords="offset points", size=7.5, color=MUTED)
-        if diagram.request.operating:
-            axes.axvspan(*(s * units.speeds for s in diagram.request.operating), color="#f0f0f0", zorder=0)
-        for y, k in _places(diagram, units, top):
-            axes.annotate(
-                diagram.lines[k].name,
-                (float(speeds[-1]), float(diagram.lines[k].frequencies[-1]) * units.frequencies),
-                (1.02, y / top),
-                xycoords="data",
-                textcoords="axes fraction",
-                size=7.5,
-                va="center",
-                color=COLOURS[k % 8],
-                annotation_clip=False,
-            )
+        if request.operating:
+            axes.axvspan(*(s * units.speeds for s in request.operating), color="#f0f0f0", zorder=0)
         axes.set_xlim(float(speeds[0]), float(speeds[-1]))
-        axes.set_ylim(0.0, top)
+        axes.set_ylim(0.0, 1.05 * float(frequencies.max()) * units.frequencies)
+        rays(axes, units, request.per_rev, diagram.omega, frequencies.T, request.operating)
+        ends = frequencies[:, -1] * units.frequencies
+        label_ends(axes, [(ends[k], line.name, COLOURS[k % 8]) for k, line in enumerate(diagram.lines)])
         axes.set_xlabel(units.speed_label)
         axes.set_ylabel(units.frequency_label)
         title(figure, heading, "ground's frame" if diagram.turbine.blades > 2 else "ground's and rotor's frame")
     return figure
-
-
-def _places(diagram: MachineDiagram, units: Units, top: float) -> list[tuple[float, int]]:
-    """Heights of the labels, at least a line apart, and the lines they belong to, upwards."""
-    order = sorted(range(len(diagram.lines)), key=lambda k: diagram.lines[k].frequencies[-1])
-    out: list[tuple[float, int]] = []
-    for k in order:
-        y = float(diagram.lines[k].frequencies[-1]) * units.frequencies
-        out.append((max(y, out[-1][0] + 0.03 * top) if out else y, k))
-    return out
 
 
 def write(

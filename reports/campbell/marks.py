@@ -30,7 +30,7 @@ DASHES = {
     MIXED: "-",
 }
 
-RED, BAND, RAY = "#C1121F", "#EDF2F7", "#C9C9C9"
+RED, BAND = "#C1121F", "#EDF2F7"
 
 
 def blend(share: Sequence[float] | np.ndarray) -> tuple[float, float, float]:
@@ -66,50 +66,6 @@ def band_label(axes: Axes, diagram: Campbell, units: Units) -> None:
             bbox=box,
             zorder=2,
         )
-
-
-def rays(axes: Axes, diagram: Campbell, units: Units) -> None:
-    """Draw rays of n per revolution, labelled at the top edge or, if they do not reach it, away from the modes."""
-    (left, right), top = axes.get_xlim(), axes.get_ylim()[1]
-    slope = units.frequencies / units.speeds
-    for n in diagram.request.per_rev:
-        end = min(right, top / (n * slope))
-        if end <= left:
-            continue
-        axes.plot([left, end], [n * slope * left, n * slope * end], color=RAY, lw=0.7, zorder=1)
-        reaches_top = end < right * (1 - 1e-9)
-        at = end if reaches_top else _clear(diagram, n, left, right, top, units)
-        axes.annotate(
-            f"{n}P",
-            (at, n * slope * at),
-            (0, 3 if reaches_top else 0),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if reaches_top else "center",
-            size=7.5,
-            color=MUTED,
-            bbox=None if reaches_top else {"facecolor": "white", "edgecolor": "none", "pad": 0.6},
-            zorder=2,
-            annotation_clip=False,
-        )
-
-
-def _clear(diagram: Campbell, n: int, left: float, right: float, top: float, units: Units) -> float:
-    """The highest speed at which a label on a ray is clear of the modes and outside the operating range."""
-    tracks, request = diagram.tracks, diagram.request
-    high = request.operating[1] * units.speeds if request.operating else left
-    places = left + (right - left) * np.arange(0.97, 0.4, -0.02)
-    outside = places[places > high + 0.03 * (right - left)]
-    places = outside if len(outside) else places
-    modes = np.stack([np.interp(places / units.speeds, tracks.omega, f) for f in tracks.frequencies.T])
-    ray = n * places * units.frequencies / units.speeds
-    distance = np.nanmin(np.abs(modes * units.frequencies - ray), axis=0) / top
-    for e in diagram.encounters:  # also avoid the labels of veerings
-        distance_below = ray / top - e.frequency * units.frequencies / top
-        is_near = np.abs(places - e.omega * units.speeds) < 0.09 * (right - left)
-        distance[is_near & (distance_below > 0) & (distance_below < 0.17) & (e.kind == "veering")] = 0.0
-    clear_places = np.flatnonzero(distance > 0.035)
-    return float(places[clear_places[0] if len(clear_places) else distance.argmax()])
 
 
 def near(axes: Axes, diagram: Campbell, x: np.ndarray, y: np.ndarray, units: Units) -> None:

@@ -12,8 +12,8 @@ from markdown_it.rules_inline import StateInline
 from markdown_it.token import Token
 
 from ...core.regular_files import read_bytes
-from ..shared.colours import NAMES
 from ..shared.markdown import anchor
+from .colours import NAMES
 
 SIGNS = re.escape("".join(NAMES))
 

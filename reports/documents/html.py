@@ -10,8 +10,8 @@ from urllib.parse import quote
 from markdown_it.token import Token
 
 from ...cases.input import atomic
-from ..shared.colours import BACKGROUND, FAINT, GREY, HEAD, INK, MUTED
 from . import document
+from .colours import BACKGROUND, FAINT, GREY, HEAD, INK, MUTED
 
 SAFE = "/:;=,()' \n.-+*<>"
 """Characters of an SVG that need no escape in a data URL inside an attribute."""

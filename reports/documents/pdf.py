@@ -12,8 +12,7 @@ from matplotlib.ft2font import FT2Font
 from ...cases.input import atomic
 from ...cases.input.errors import CaseError
 from ...references.protocol.interface import extra
-from ..shared import colours
-from . import document, print_nodes
+from . import colours, document, print_nodes
 
 FONTS = Path(get_data_path(), "fonts", "ttf")
 """The fonts that Matplotlib brings along."""

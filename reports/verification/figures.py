@@ -10,6 +10,7 @@ from matplotlib.figure import Figure
 from matplotlib.lines import Line2D
 
 from ...cases.judge.results import Cell, Run, Verdict
+from ..shared.rays import rays
 from ..shared.style import (
     FAINT,
     INK,
@@ -60,7 +61,11 @@ def campbell(run: Run, case: str, units: Units, among: Sequence[str] = ()) -> Fi
         axes.set_ylim(
             0, 1.05 * max([*answers, *(f for line in lines.values() for f in line.values())]) * units.frequencies
         )
-        _rays(axes, units)
+        right, top = axes.get_xlim()[1] / units.speeds, axes.get_ylim()[1] / units.frequencies
+        per_rev = [n for n in ORDERS if 0.04 * top < n * right < 3.5 * top]
+        omega = np.array(speeds)
+        frequencies = [np.interp(omega, sorted(line), [line[o] for o in sorted(line)]) for line in lines.values()]
+        rays(axes, units, per_rev, omega, np.transpose(frequencies))
         ends = []
         for name, line in lines.items():
             omega = np.array(sorted(line))
@@ -95,30 +100,6 @@ def core_lines(cells: Sequence[Cell]) -> dict[str, dict[float, float]]:
         by_number.setdefault(f"mode {c.mode}", {})[c.omega] = c.full or 0.0
     lasting = all(set(line) == speeds for line in by_name.values())
     return by_name if lasting else by_number
-
-
-def _rays(axes: Axes, units: Units) -> None:
-    right, top = axes.get_xlim()[1], axes.get_ylim()[1]
-    slope = units.frequencies / units.speeds
-    for n in ORDERS:
-        end = min(right, top / (n * slope))
-        if not 0.04 * top < n * slope * right < 3.5 * top:
-            continue
-        axes.plot([0, end], [0, n * slope * end], color=FAINT, lw=0.8, zorder=1)
-        at = (end, n * slope * end) if end < right else (0.93 * end, 0.93 * n * slope * end)
-        box = {"facecolor": "white", "edgecolor": "none", "pad": 0.8}
-        axes.annotate(
-            f"{n}P",
-            at,
-            (0, 3 if end < right else 0),
-            textcoords="offset points",
-            ha="center",
-            va="bottom" if end < right else "center",
-            size=7,
-            color=MUTED,
-            bbox=box,
-            zorder=2,
-        )
 
 
 def _markers(

@@ -14,8 +14,8 @@ import pytest
 from southwell.cases.judge.results import Setting
 from southwell.cases.store.results_file import write
 from southwell.reports.cli import arguments
-from southwell.reports.documents import html
-from southwell.reports.shared import colours, summary
+from southwell.reports.documents import colours, html
+from southwell.reports.shared import summary
 from southwell.reports.verification import report as matrix_report
 
 from ...support import browsers, samples

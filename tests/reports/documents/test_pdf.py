@@ -13,8 +13,7 @@ from southwell.cases.input.errors import CaseError
 from southwell.cases.store.results_file import write
 from southwell.reports.cli import arguments
 from southwell.reports.cli import report as command
-from southwell.reports.documents import document, pdf, print_nodes
-from southwell.reports.shared import colours
+from southwell.reports.documents import colours, document, pdf, print_nodes
 from southwell.reports.verification import report as matrix_report
 
 from ...support import samples

@@ -1,6 +1,6 @@
 """Colours of verdicts in tables on the screen and on paper, in addition to their signs and words."""
 
-from .summary import SYMBOL
+from ..shared.summary import SYMBOL
 
 INK, FAINT, GREY, HEAD = "#1a1a1a", "#d8d8d8", "#6b6b6b", "#f3f4f6"
 """Colours of text, of lines, of text about answers that are missing, and of the head of a table."""
