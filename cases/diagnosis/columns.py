@@ -10,7 +10,7 @@ from ..judge.results import Cell, Diagnosed
 from .diagnose import cause_lines, diagnose, mode_lines
 
 LEAST, MOST = 1e-5, 1e-3
-"""Limits of the uncertainty that is taken from the cells, relative."""
+"""Limits of the uncertainty that is taken from the cells, relative, if a difference exceeds its own."""
 
 
 def is_due(cells: Sequence[Cell], added: bool) -> bool:
@@ -38,6 +38,8 @@ def diagnosed(blade: Blade, cells: Sequence[Cell], deck: BladeFile | None = None
         frequencies[speeds.index(cell.omega), names.index(cell.name)] = cell.value
     uncertainties = [cell.uncertainty for cell in answered if cell.uncertainty is not None]
     uncertainty = float(np.clip(np.median(uncertainties), LEAST, MOST)) if uncertainties else LEAST
+    if all(abs(cell.difference or 0.0) <= (cell.uncertainty or 0.0) for cell in answered):
+        uncertainty = max([uncertainty, *uncertainties])  # coarsely printed numbers need no cause either
     diagnosis = diagnose(blade, speeds, frequencies, names, by_shape=True, uncertainty=uncertainty, deck=deck)
     return Diagnosed(
         case=cells[0].case,

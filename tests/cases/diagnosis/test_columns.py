@@ -70,3 +70,18 @@ def test_a_diagnosis_tolerates_a_mode_that_the_solver_names_otherwise() -> None:
     assert diagnosed(BLADE, [*cells(), strange]).sentence.startswith(
         "agrees with Southwell's own solver without hub radius"
     )
+
+
+def test_a_difference_within_the_rounding_of_its_own_number_needs_no_cause() -> None:
+    (modes,) = mesh_sweep(BLADE, SPEEDS[:1], 40, 5)
+    names = numbered(families(participation(modes, BLADE)))
+    right = modes.frequencies
+
+    def sentence(rounding: float) -> str:
+        """The first frequency is printed with fewer digits than the others: 4e-4 too high, ± ``rounding``."""
+        first = replace(cell(0.0, 1, names[0], right[0] * (1 + 4e-4)), difference=4e-4, uncertainty=rounding)
+        others = [replace(cell(0.0, k + 1, names[k], right[k]), difference=0.0, uncertainty=2e-5) for k in range(1, 4)]
+        return diagnosed(BLADE, [first, *others]).sentence
+
+    assert sentence(7e-4) == "all frequencies agree within 0.04 %"
+    assert not sentence(1e-4).startswith("all frequencies agree")
