@@ -214,7 +214,7 @@ def _blinding(fault: Fault, blinded: Fault) -> Control:
     detected = _judged(blinded, cells_without, cells_with).detected_by
     false_alarms = _judged(fault, correct_cells, cells_without).detected_by
     return _control(
-        fault, false_alarms if detected else (*false_alarms, f"negative control not detected: {blinded.name}")
+        fault, false_alarms if detected else (*false_alarms, f"seeded fault not detected: {blinded.name}")
     )
 
 

@@ -95,7 +95,7 @@ class Level:
 
 @dataclass(frozen=True)
 class Control:
-    """Result of a negative control: one seeded fault run through the whole pipeline; see ``cases.faults``.
+    """Result of one seeded fault, run through the whole pipeline; see ``cases.faults``.
 
     Attributes:
         control: name of the fault.

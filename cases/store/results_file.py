@@ -3,7 +3,7 @@
 It has one JSON object per line; ``kind`` identifies its type. The first line is the plan: every case and code of
 the run. The last line is the completion record: the number of lines of each kind before it. A file without either, or
 without the cells that its plan requires, is *unfinished*, and no command accepts it as a result. Between them are the
-settings of the cases, cells, answers of refinements, negative controls, error budgets, origins, diagnoses, checks of
+settings of the cases, cells, answers of refinements, seeded faults, error budgets, origins, diagnoses, checks of
 properties, and one line about the run itself.
 """
 

@@ -24,7 +24,7 @@ def render(run: Run, gate: Comparison | None = None, strict: bool = False) -> by
     """The XML document.
 
     A cell fails if its verdict is a failure or inconclusive, or if the gate found it worse or, with ``strict``, moved.
-    Missing answers, and negative controls that are no longer detected, are separate failed test cases. An incomplete
+    Missing answers, and seeded faults that are no longer detected, are separate failed test cases. An incomplete
     run adds a first test case with an error.
     """
     findings = _findings(gate, strict) if gate else {}
@@ -79,7 +79,7 @@ def _regressions(root: Element, gate: Comparison) -> None:
 
 
 def _lost(suite: Element, control: Detection) -> None:
-    test = _test(suite, control.case, f"negative control: {control.control} at {control.omega:.6g} rad/s")
+    test = _test(suite, control.case, f"seeded fault: {control.control} at {control.omega:.6g} rad/s")
     _failed(test, "not detected", f"was detected by {', '.join(control.detected_by)}; no code detects it now")
 
 

@@ -47,7 +47,7 @@ def add(
     entry = history.entry(finished(folder), commit or _checked_out(), machine)
     with writable(f"--history {file}", "file"):
         history.append(file, entry)
-    print(f"{file}: {entry.commit}: {len(entry.cells)} cells, {len(entry.controls)} negative controls")
+    print(f"{file}: {entry.commit}: {len(entry.cells)} cells, {len(entry.controls)} seeded faults")
     return 0
 
 

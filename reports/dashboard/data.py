@@ -38,7 +38,7 @@ def verdicts() -> list[dict[str, str]]:
 
 
 def first(run: Run, name: str) -> dict[str, Any]:
-    """The matrix: cells, cases, columns, and results of the negative controls."""
+    """The matrix: cells, cases, columns, and results of the seeded faults."""
     cases, heads, pages = summary.cases(run), columns(run.cells, table_column), code_names(run)
     titles = {s.case: s.title for s in run.settings}
     return {

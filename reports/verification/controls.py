@@ -1,4 +1,4 @@
-"""Negative controls as text and as a table: each seeded fault, its size, its effect, and the cells that detect it."""
+"""Seeded faults as text and as a table: each with its size, its effect, and the cells that detect it."""
 
 from ...cases.judge.results import Control, Run
 from ...cases.judge.verdict import percent
@@ -14,13 +14,13 @@ def headline(run: Run) -> str:
     if not completed:
         return ""
     if undetected:
-        return f"**Negative controls not detected: {undetected}.**"
+        return f"**Seeded faults not detected: {undetected}.**"
     skipped = len(run.controls) - len(completed)
     silent = sum(bool(c.without_effect) for c in completed)
     exceptions = f"; {skipped} were not run, because a code is missing" if skipped else ""
     count = len(completed) - silent
     exceptions += f"; {silent} have no effect here" if silent else ""
-    return f"Negative controls: {count} of {count} seeded faults, run through the whole pipeline, are detected{exceptions}."
+    return f"{count} of {count} seeded faults, run through the whole pipeline, are detected{exceptions}."
 
 
 def outcome(control: Control) -> str:

@@ -1,4 +1,4 @@
-"""Tables for the terminal: a run's matrix, its negative controls, and the frequencies of a blade."""
+"""Tables for the terminal: a run's matrix, its seeded faults, and the frequencies of a blade."""
 
 import re
 from collections.abc import Iterator, Sequence
@@ -76,7 +76,7 @@ def legend() -> str:
 
 
 def controls(run: Run, width: int) -> Table:
-    """The table of negative controls, one row per seeded fault; what detected it, if ``width`` characters are enough."""
+    """The table of seeded faults, one row for each; what detected it, if ``width`` characters are enough."""
     out = Table(box=box.SIMPLE_HEAD, padding=(0, 1, 0, 0), pad_edge=False)
     for head in ("seeded fault", "in", "outcome", "largest difference", "detected by")[: 5 if width >= WIDE else 4]:
         out.add_column(head, overflow="fold")

@@ -123,7 +123,7 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
     good = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), needs="exudyn-tree")))
     assert summary.status(good) == 0
     headline = reported.headline(good)
-    assert headline.startswith("Negative controls: 1 of 1 seeded faults")
+    assert headline.startswith("1 of 1 seeded faults, run through")
     assert headline.endswith("detected; 1 were not run, because a code is missing.")
     blind = replace(good, controls=(control(detected_by=()),))
     assert summary.status(blind) == 1

@@ -133,7 +133,7 @@ def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
         line = f"history add {where} --history {file} --commit abc --machine quiet"
         status, out, err = southwell(line, capsys)
         assert (status, err) == (0, "")
-        assert "abc: 2 cells, 1 negative controls" in out
+        assert "abc: 2 cells, 1 seeded faults" in out
     entries = history.read(file).entries
     assert [(e.commit, e.machine, e.versions) for e in entries] == [("abc", "quiet", {"some-code": "1.0"})] * 2
     with file.open("a") as cut:
