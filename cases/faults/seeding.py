@@ -213,9 +213,7 @@ def _blinding(fault: Fault, blinded: Fault) -> Control:
             cells_with = cells(blinded.trial)
     detected = _judged(blinded, cells_without, cells_with).detected_by
     false_alarms = _judged(fault, correct_cells, cells_without).detected_by
-    return _control(
-        fault, false_alarms if detected else (*false_alarms, f"seeded fault not detected: {blinded.name}")
-    )
+    return _control(fault, false_alarms if detected else (*false_alarms, f"seeded fault not detected: {blinded.name}"))
 
 
 def _judged(fault: Fault, correct_cells: Sequence[Cell], faulty_cells: Sequence[Cell]) -> Control:

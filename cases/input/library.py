@@ -81,11 +81,15 @@ def load(name: str) -> Case:
     if name in names():
         with as_file(files(data)) as folder:
             return read(folder / f"{name}.toml")
-    if name in turbines():
-        raise CaseError(f"case: {name!r}: it is a turbine, not a blade: see `southwell verify {name}`")
-    if name in mechanisms() or (name.endswith(".toml") and matches_format(Path(name))):
+    is_file = name.endswith(".toml")
+    if name in mechanisms() or (is_file and matches_format(Path(name))):
         raise CaseError(f"case: {name!r}: it is a mechanism, not a blade: see `southwell mechanism {name}`")
-    if name.endswith(".toml"):
+    if name in turbines() or (is_file and turbine_cases.matches_format(Path(name))):
+        raise CaseError(
+            f"case: {name!r}: it is a turbine, not a blade: see `southwell verify {name}`, or give the file of the turbine to "
+            "`southwell campbell`"
+        )
+    if is_file:
         return read(Path(name))
     existing = (*names(), *mechanisms(), *turbines())
     raise CaseError(f"case: {name!r} is not known: {nearest(name, existing)}; or give the path of a .toml file")

@@ -3,9 +3,10 @@
 Axes are those of ``core.blade``. A CSV has the columns of ``cases.input.blades.Stations``; its length is given separately.
 """
 
+from collections.abc import Mapping
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import msgspec
 from msgspec import Meta, Struct
@@ -60,6 +61,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         return Reading(_mounted(blade, mount), source)
     data = document(path)
     finite(data, str(path))
+    _blade_only(path, data)
     text = convert(data, BladeFile, str(path))
     if isinstance(text.blade, Dimensionless):
         raise CaseError(
@@ -73,6 +75,17 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
         raise CaseError(f"{path}: blade: {error}") from error
     notes = (*(note for note in (text.title, text.source) if note), *_rigid(blade))
     return Reading(_mounted(blade, mount), Source(NAME, (path,), AXES, notes, unused_values))
+
+
+def _blade_only(path: Path, data: Mapping[str, Any]) -> None:
+    """Reject the file of a turbine, which names that of its blade or of its OpenFAST model."""
+    rotor = data.get("rotor")
+    file = rotor.get("blade") if isinstance(rotor, dict) else data.get("openfast")
+    if isinstance(file, str):
+        raise CaseError(
+            f"{path}: a turbine, not a blade: give {path.parent / file} for its blade; `southwell campbell` and `southwell "
+            "verify` solve the turbine"
+        )
 
 
 def _rigid(blade: Blade) -> tuple[str, ...]:

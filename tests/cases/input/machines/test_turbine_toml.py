@@ -5,6 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from southwell.cases.input import library, readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.machines import towers, turbines
 from southwell.cases.input.readers.openfast import turbine as openfast
@@ -188,3 +189,20 @@ def test_other_files_are_no_machines(tmp_path: Path) -> None:
     assert not turbines.is_turbine(blade)
     assert not towers.is_tower(blade)
     assert not towers.is_tower(tmp_path / "missing.bmi")
+
+
+@pytest.mark.parametrize(("head", "file"), [("[rotor]\nblade = ", "blade.dat"), ("openfast = ", "turbine.fst")])
+def test_a_turbine_where_a_blade_is_wanted_names_the_file_of_the_blade(tmp_path: Path, head: str, file: str) -> None:
+    path = tmp_path / "turbine.toml"
+    path.write_text(f'{head}"{file}"\n')
+    with pytest.raises(CaseError) as error:
+        readers.reading(path)
+    assert str(error.value).startswith(f"{path}: a turbine, not a blade: give {tmp_path / file} for its blade;")
+
+
+def test_the_case_of_a_turbine_is_none_of_blades(tmp_path: Path) -> None:
+    path = tmp_path / "case.toml"
+    path.write_text('name = "case"\nturbine = "turbine.toml"\n')
+    for name in ("nrel-5mw-turbine", str(path)):
+        with pytest.raises(CaseError, match="it is a turbine, not a blade: see `southwell verify"):
+            library.load(name)
