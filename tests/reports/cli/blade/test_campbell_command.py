@@ -13,7 +13,7 @@ from southwell.cases.campbell.prestress import LOAD, STANDARD_GRAVITY
 from southwell.cases.input import library
 from southwell.core.solve import modes
 from southwell.reports.cli.blade import campbell_options
-from southwell.reports.cli.blade.campbell import SpeedProgress
+from southwell.reports.cli.blade.campbell_solution import SpeedProgress
 from southwell.reports.shared.certain import certain
 from southwell.reports.shared.units import RPM
 
