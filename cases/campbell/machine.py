@@ -9,8 +9,9 @@ from numpy.typing import NDArray
 
 from ...core.rotor.periodic import PeriodicError
 from ...core.turbine.machine import FINER, Resolution, machine
+from ...core.turbine.tracking import tracked
 from ...core.turbine.turbine import Turbine
-from ...core.turbine.turbine_modes import TurbineModes, tracked, turbine_modes
+from ...core.turbine.turbine_modes import TurbineModes, turbine_modes
 from ..input.errors import NO_STATE, CaseError, rad_s, unsteady
 from .required import TEN_PERCENT, RequiredMargin
 from .resonances import Range

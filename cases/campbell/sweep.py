@@ -1,4 +1,4 @@
-"""NamedMode frequencies of a blade at each rotor speed, computed by core; ``tracked`` follows modes from speed to speed."""
+"""Natural frequencies of a blade at each rotor speed, by core; ``tracked.tracked`` follows modes from speed to speed."""
 
 import warnings
 from collections.abc import Iterator, Sequence

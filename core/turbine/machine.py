@@ -17,7 +17,8 @@ from . import component
 from .assumed import Assumed, motions
 from .component import Component
 from .rotor import turned_axes
-from .tower import Tower, base_energy, standing, tower_mesh
+from .tower import Tower, standing, tower_mesh
+from .tower_modes import base_energy
 from .turbine import Turbine
 
 Array = NDArray[np.float64]

@@ -5,13 +5,10 @@ the yaw bearing. The motion with the largest part names the mode, and that part 
 collective, cosine and sine motion are added, and the whirl follows from the phase of sine against cosine.
 """
 
-from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
-from scipy.optimize import linear_sum_assignment
 
 from .. import participation
 from ..modes import Modes
@@ -23,7 +20,7 @@ from . import stations
 from .assembly import Assembled, assemble
 from .machine import Machine
 from .motion import Motion, displacements, flattened
-from .tower import NAMES, PLATFORM, ordinal
+from .tower_modes import NAMES, PLATFORM, ordinal
 from .two_blades import periodic_modes
 
 Array = NDArray[np.float64]
@@ -31,9 +28,6 @@ Complex = NDArray[np.complex128]
 
 CONFIDENT = 0.5
 """Smallest part of the elastic energy that names a mode without a question mark."""
-
-LIKE_FIRST = 2.0
-"""Weight of the likeness to the mode at the first speed against that to the mode at the last one."""
 
 RIGID = 1e-6
 """Frequency, relative to the lowest of the blade, below which a mode is the rotor that turns freely."""
@@ -253,34 +247,3 @@ def _motion(machine: Machine, a: Assembled, vectors: Complex) -> Motion:
         hub=vectors.T @ a.hub.T,
         blades=blades,
     )
-
-
-def tracked(at: Sequence[TurbineModes]) -> list[NDArray[np.intp]]:
-    """For each speed the (m,) indices of its modes, in the order of the modes at the first speed.
-
-    A line continues with the mode that is most like the last one and like that at the first speed. Where two modes come close
-    and exchange their motions, the lines cross, and each keeps its motion and its name, however small the steps are.
-    """
-    order = [np.arange(len(at[0].frequencies))]
-    for previous, following in pairwise(at):
-        last = _assurance(previous.shapes[order[-1]], following.shapes)
-        order.append(_paired(last + LIKE_FIRST * _assurance(at[0].shapes, following.shapes)))
-    return order
-
-
-def linked(previous: TurbineModes, following: TurbineModes) -> NDArray[np.intp]:
-    """(m,) the mode of ``following`` that continues each mode of ``previous``: the pairs with the largest sum of MACs."""
-    return _paired(_assurance(previous.shapes, following.shapes))
-
-
-def _assurance(x: Complex, y: Complex) -> Array:
-    """(m, m) modal assurance criterion of shapes (m, k)."""
-    return np.abs(x.conj() @ y.T) ** 2 / np.outer((np.abs(x) ** 2).sum(1), (np.abs(y) ** 2).sum(1))
-
-
-def _paired(closeness: Array) -> NDArray[np.intp]:
-    """(m,) the column of each row, with the largest sum."""
-    rows, columns = linear_sum_assignment(-closeness)
-    out = np.empty(len(closeness), dtype=np.intp)
-    out[rows] = columns
-    return out

@@ -7,7 +7,7 @@ import numpy as np
 
 from ....cases.input.errors import NO_STATE, CaseError
 from ....cases.input.machines import towers
-from ....core.turbine.tower import TowerModes, tower_modes
+from ....core.turbine.tower_modes import TowerModes, tower_modes
 from ...shared import not_used
 from ...shared.certain import certain, relative
 from ...shared.console import output

@@ -12,7 +12,8 @@ from scipy.optimize import brentq
 from southwell.core import multibody as mb
 from southwell.core.blade import Blade, section_mass, section_stiffness, uniform_blade
 from southwell.core.element.branches import springs
-from southwell.core.turbine.tower import Support, Tower, tower_modes
+from southwell.core.turbine.tower import Support, Tower
+from southwell.core.turbine.tower_modes import tower_modes
 
 EI, MASS, LENGTH = 3e7, 100.0, 20.0
 

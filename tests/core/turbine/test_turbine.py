@@ -17,9 +17,11 @@ from southwell.core.space.inertia import transformed
 from southwell.core.spectrum import eigen
 from southwell.core.turbine.assembly import assemble
 from southwell.core.turbine.machine import Resolution, machine, rigid_rotor
-from southwell.core.turbine.tower import Support, Tower, ordinal, tower_modes
+from southwell.core.turbine.tower import Support, Tower
+from southwell.core.turbine.tower_modes import ordinal, tower_modes
+from southwell.core.turbine.tracking import linked
 from southwell.core.turbine.turbine import Drivetrain, Turbine, shaft_pose
-from southwell.core.turbine.turbine_modes import linked, turbine_modes
+from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.tests.support.turbines import SMALL, as_mechanism, rigid_nacelle_and_rotor, small
 
 OMEGA = 4.0

@@ -10,7 +10,7 @@ import scipy.linalg
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.machines import towers
-from southwell.core.turbine.tower import tower_modes
+from southwell.core.turbine.tower_modes import tower_modes
 from southwell.tests.core.turbine.test_tower import BMODES_ELEMENTS, BMODES_SECTIONS, HEIGHT
 
 AXIAL = (61.868e9, 55.222e9, 48.953e9, 43.061e9, 37.548e9, 32.411e9, 27.653e9, 23.272e9, 19.268e9, 15.643e9)

@@ -7,7 +7,7 @@ import pytest
 
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.machines import towers
-from southwell.core.turbine.tower import tower_modes
+from southwell.core.turbine.tower_modes import tower_modes
 
 HEIGHT, E, RHO, DIAMETER, WALL = 80.0, 2.1e11, 8500.0, 6.0, 0.03
 INNER = DIAMETER - 2 * WALL

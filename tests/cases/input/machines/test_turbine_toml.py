@@ -13,7 +13,7 @@ from southwell.cases.plan.request import Request
 from southwell.cases.plan.subjects import subjects
 from southwell.cases.plan.turbine import TurbineSubject
 from southwell.core.turbine.machine import machine
-from southwell.core.turbine.tower import tower_modes
+from southwell.core.turbine.tower_modes import tower_modes
 from southwell.core.turbine.turbine_modes import turbine_modes
 from southwell.references.exudyn.turbine import ExudynTurbine
 from southwell.tests.support.turbine_decks import deck
