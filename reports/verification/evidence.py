@@ -1,5 +1,6 @@
 """The evidence of a run by kind: number of answers, the worst difference of each kind, and where it is."""
 
+from collections import Counter
 from collections.abc import Callable, Iterable
 from typing import Literal
 
@@ -112,7 +113,7 @@ def first(run: Run) -> list[str]:
     """
     independent = {(case, w.name) for case in summary.cases(run) for w in witnesses(run, case) if w.kind in INDEPENDENT}
     worst = farthest(c for c in run.cells if (c.case, c.code) in independent)
-    data = [line for line in (beyond_uncertainty(run), measured(run)) if line]
+    data = [line for line in (beyond_uncertainty(run), partial(run), measured(run)) if line]
     if not worst or any(c.verdict in summary.BAD for c in run.cells):
         return [answer(run), *properties.lines(run), *urgent(run), *data]
     return [
@@ -121,6 +122,21 @@ def first(run: Run) -> list[str]:
         f"Worst independent answer, relative to its target: {_shown(run, worst)}.",
         *data,
     ]
+
+
+def partial(run: Run) -> str:
+    """Files of other programs with fewer frequencies than are compared; empty if there are none."""
+    compared: dict[str, int] = {}
+    for planned in run.plan:
+        compared[planned.case] = max(compared.get(planned.case, 0), planned.speeds * planned.cells)
+    files = {code for code, version in run.versions.items() if version.startswith("results in ")}
+    given = Counter((c.code, c.case) for c in run.cells if c.code in files and c.value is not None)
+    listed = "; ".join(
+        f"{code} gives {count} of {compared[case]} frequencies ({case})"
+        for (code, case), count in given.items()
+        if count < compared.get(case, 0)
+    )
+    return f"Compared in part: {listed}." if listed else ""
 
 
 def beyond_uncertainty(run: Run) -> str:

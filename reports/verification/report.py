@@ -111,6 +111,7 @@ def headline(run: Run) -> list[str]:
         lines.append(f"Largest difference among passes: {summary.plus_minus(worst)} ({evidence.where(run, worst)}).")
     lines += [
         evidence.beyond_uncertainty(run),
+        evidence.partial(run),
         paper_table.line(run),
         witnesses.headline(run),
         *witnesses.missing(run),
