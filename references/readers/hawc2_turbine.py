@@ -240,9 +240,9 @@ def _assembled(path: Path, structure: Any, StFile: Any) -> Machine:
     unattached = [name for name in parents if not any(name in chain for chain in below.values())]
     if unattached:
         raise NotReadError(f"{unattached[0]} carries no blade: bodies beside the others are not weighed a second time")
-    shaft = next((name for name in below[blades[0]] if name in axis_of), None)
+    shaft = next((n for n in below[blades[0]] if n in axis_of and all(n in chain for chain in below.values())), None)
     if shaft is None:
-        raise NotReadError("no ini_rotvec_d1: the rotor's axis is not read a second time")
+        raise NotReadError("no ini_rotvec_d1 of a shaft: the rotor's axis is not read a second time")
     names = list(dict.fromkeys(name for chain in below.values() for name in chain))
     parts = {name: _part(path, name, bodies[name], StFile) for name in names if name not in blades}
     ends = tuple(lump for lump in parts[tower].lumped if lump[0] == len(parts[tower].z) - 1)
