@@ -112,6 +112,14 @@ class Field:
         """Position of item ``k`` of a list, for a message."""
         return _at(self.text, self._items()[k], self.name)
 
+    def names(self) -> tuple[str, ...]:
+        """The keys of a mapping.
+
+        Raises:
+            CaseError: if it is not a mapping.
+        """
+        return tuple(self._keys())
+
     def _items(self) -> list[yaml.Node]:
         if not isinstance(self.node, yaml.SequenceNode):
             raise CaseError(f"{self.at}: expected a list: correct it")
