@@ -150,10 +150,6 @@ def contents(path: Path, mount: Mount) -> Contents:
     assert text is not None
     columns = _subset(text, subset)
     r = columns["r"]
-    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
-    columns.need(
-        np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
-    )
     rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
     columns.need(rises, "r", r, "not beyond the previous station: sort them and remove duplicates")
     return Contents(columns, body, file_mount, (text.path, *([htc.path] if htc else [])))
@@ -189,6 +185,10 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
                     f"{text.at(k)}: set {current}, subset {match[1]}: there already is one: renumber or remove it"
                 )
             heads[current, int(match[1])] = (k, int(match[2]))
+    if not heads:
+        raise CaseError(
+            f"{text.path}: no line that begins with $, set and number of rows: check that it is the right file"
+        )
     if subset is None and len(heads) > 1:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
         raise CaseError(
@@ -202,10 +202,16 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     first = first_numbers(text, k + 1)
     wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2
     columns = table(text, first, count, FULL if wide else PLAIN)
-    columns.positive(
-        "m", *(("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "A"))
+    stiffness = (
+        ("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "k_x", "k_y", "A")
     )
-    columns.positive("ri_x", "ri_y", *(() if wide else ("k_x", "k_y")), zero=True)
+    columns.positive("m", *stiffness)
+    columns.positive("ri_x", "ri_y", zero=True)
+    r, row = columns["r"], np.arange(count)
+    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
+    columns.need((row > 0) | (r == 0), "r", r, "the first station is the root; begin at 0")
+    columns.need(r >= np.concatenate([[0.0], r[:-1]]), "r", r, "before the previous station: sort them")
+    columns.need((row + 1 < count) | (r > 0), "r", r, "the last station is the end: give two or more")
     return columns
 
 

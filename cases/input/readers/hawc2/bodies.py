@@ -27,7 +27,7 @@ MOST_FILES = 100
 MOST_LINES = 200_000
 """Maximum number of lines of all these files."""
 
-_BODIES = re.compile(r"\s*begin\s+(new_htc_structure|main_body)\b", re.IGNORECASE)
+_BODIES = re.compile(r"\s*(begin\s+(new_htc_structure|main_body)|continue_in_file)\b", re.IGNORECASE)
 
 
 class Command(NamedTuple):
@@ -47,7 +47,7 @@ Body = list[Command]
 
 
 def matches_format(text: Text) -> bool:
-    """Whether these are lines of an htc file with bodies."""
+    """Whether these are lines of an htc file with bodies, or that continues in another."""
     return any(_BODIES.match(line) for line in text.lines)
 
 
@@ -96,13 +96,19 @@ def blocks(commands: Sequence[Command], *kinds: str) -> list[tuple[str, Body]]:
 
 
 def main_bodies(commands: Sequence[Command]) -> dict[str, Body]:
-    """The commands of each main_body by its name in lower case; those of a copy are the commands of what it copies."""
+    """The commands of each main_body by its name in lower case; those of a copy are the commands of what it copies.
+
+    Raises:
+        CaseError: if two have the same name.
+    """
     out: dict[str, Body] = {}
     for _, body in blocks(commands, "main_body"):
         values = {c.words[0]: c.words[1].lower() for c in body if len(c.words) > 1}
         original = out.get(values.get("copy_main_body", ""))
-        if "name" in values:
-            out.setdefault(values["name"], original or body)
+        if (name := values.get("name")) in out:
+            raise CaseError(f"{body[0].at}: main_body: there already is one whose name is {name}: rename or remove it")
+        if name is not None:
+            out[name] = original or body
     return out
 
 

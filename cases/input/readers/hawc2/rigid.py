@@ -109,6 +109,8 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
             f"{file}: x_cg, y_cg, pitch: not zero on {name}, which points along −z: their directions are ambiguous; set "
             "them to zero"
         )
+    if np.abs(points[0, :3]).max() > EVEN * np.abs(points[:, :3]).max():
+        raise CaseError(f"{c2_def.sections(body)[0].at}: sec: {name} does not begin at 0, 0, 0, which is not supported")
     steps = np.linalg.norm(np.diff(points[:, :3], axis=0), axis=1)
     if steps.min() <= 0:
         k = int(steps.argmin()) + 1

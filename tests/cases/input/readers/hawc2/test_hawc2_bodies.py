@@ -23,10 +23,8 @@ def with_first(folder: Path, body: str) -> Path:
 
 
 def test_the_tower_is_the_body_on_the_ground(tmp_path: Path) -> None:
-    """A body ``towertop`` of 1.1 m may come first."""
-    path = deck.htc(tmp_path)
-    top, text = deck.body("towertop", "towertop.st", deck.POINTS["towertop"], ()), path.read_text()
-    path.write_text(text.replace("begin main_body;", top + "begin main_body;", 1))
+    """A body ``tower_top`` of 1.1 m may come first."""
+    path = with_first(tmp_path, deck.body("tower_top", "towertop.st", deck.POINTS["towertop"], ()))
     tower, source = towers.read(path)
     assert tower.beam.length == 30.0
     assert source.notes[0] == "main_body tower, clamped at the base, without weight"
@@ -94,3 +92,27 @@ def test_other_lengths_are_stated(tmp_path: Path) -> None:
         reading.source.notes
     )
     assert np.trapezoid(reading.blade.mass[:, 0, 0], reading.blade.stations) == pytest.approx(1275.0 * 1.0045)
+
+
+ROWS = {
+    "shear": (["0 10 0 0 0 0 0 0 1 1 1e16 1e16 1e16 0 1 1e16 0 0 0"] * 2, "line 3: k_x: 0: it must be positive"),
+    "beginning": (deck.rigid(1.0)[1:] * 2, "line 3: r: 1: the first station is the root; begin at 0"),
+    "order": ([*deck.rigid(2.0), *deck.rigid(1.0)[1:]], "line 5: r: 1: before the previous station"),
+    "end": (deck.rigid(1.0)[:1], "line 3: r: 0: the last station is the end: give two or more"),
+}
+"""Rows of a hub and why they are wrong."""
+
+
+@pytest.mark.parametrize("name", ROWS)
+def test_rows_of_a_rigid_body_are_checked_as_those_of_a_blade(tmp_path: Path, name: str) -> None:
+    rows, message = ROWS[name]
+    with pytest.raises(CaseError, match=rf"hub1.st: {message}"):
+        hawc2.read(deck.htc(tmp_path, {"hub1": rows}))
+
+
+def test_an_htc_that_only_continues_in_others(tmp_path: Path) -> None:
+    path, main = deck.htc(tmp_path), tmp_path / "main.htc"
+    main.write_text("begin simulation ;\nend simulation ;\ncontinue_in_file ./small.htc ;\nexit ;\n")
+    assert hawc2.is_turbine(main)
+    np.testing.assert_array_equal(hawc2.read(main).turbine.hub, hawc2.read(path).turbine.hub)
+    np.testing.assert_array_equal(readers.read(main).mass, readers.read(path).mass)

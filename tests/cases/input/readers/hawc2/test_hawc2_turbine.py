@@ -218,6 +218,12 @@ REFUSED = {
     ),
     "gravity": ("name tower ;", "name tower ;\n  gravity 9,81 ;", "gravity: 9,81: not a number"),
     "gravity upwards": ("name tower ;", "name tower ;\n  gravity -9.81 ;", "gravity: -9.81: not a number, or negative"),
+    "beginning": (
+        "sec 1 0 0 0 0.0 ;\n    sec 2 0 0 1 ",
+        "sec 1 0 0 0.5 0 ;\n sec 2 0 0 1.5 ",
+        "hub1 does not begin at 0, 0, 0",
+    ),
+    "a text": ("filename shaft.st", "filename small.htc", r"no line that begins with \$, set and number of rows"),
     "direction of an offset": (
         "filename towertop.st",
         "filename aside.st",
