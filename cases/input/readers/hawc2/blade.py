@@ -197,7 +197,9 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     subset = subset or next(iter(heads))
     if subset not in heads:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
-        raise CaseError(f"{text.path}: no set {subset[0]}, subset {subset[1]}: it has {names}: correct --subset")
+        raise CaseError(
+            f"{text.path}: no set {subset[0]}, subset {subset[1]}: it has {names}: correct --subset or the htc's set"
+        )
     k, count = heads[subset]
     first = first_numbers(text, k + 1)
     wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2

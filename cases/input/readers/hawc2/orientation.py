@@ -6,6 +6,7 @@ the body that turns with it, and its speed. A body ends at the last point of its
 *How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 6.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -56,9 +57,10 @@ class Relative:
 
 
 def relatives(commands: Sequence[Command]) -> dict[str, Relative]:
-    """The ``relative`` blocks that are understood, by the name of body2."""
-    parsed = (_relative(block) for _, block in blocks(commands, "relative"))
-    return {block.child: block for block in parsed if block}
+    """The ``relative`` blocks that are understood, by the name of body2; none of a body that has several."""
+    parsed = [block for _, commands in blocks(commands, "relative") if (block := _relative(commands))]
+    count = Counter(block.child for block in parsed)
+    return {block.child: block for block in parsed if count[block.child] == 1}
 
 
 def base(commands: Sequence[Command]) -> tuple[str, Array] | None:

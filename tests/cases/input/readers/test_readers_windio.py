@@ -104,6 +104,7 @@ def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
             "components: !include blade.yaml\n",
             r"line 1: components: is in another file \(blade.yaml\): insert its text here",
         ),
+        ("components:\n  hub: 1\n  blade: 1\n  blade: 2\n", "line 2: components: key blade is given twice: remove one"),
         ("components:\n\tblade: 1\n", r"line 2: not YAML"),
         ("- 1\n", "expected keys with values"),
     ],

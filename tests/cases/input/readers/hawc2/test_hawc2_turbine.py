@@ -172,6 +172,12 @@ LACKING = {
         "name hub2 ;\n  concentrated_mass 2 0 0 0 500 0 0 0 ;",
         "hub2, a copy_main_body with its own concentrated_mass, is not supported",
     ),
+    "one orientation": (
+        "begin relative;\n  body1 tower last;",
+        "begin relative;\n  body1 tower last;\n  body2 shaft 1;\n  body2_eulerang 90 0 0;\nend relative;\n"
+        "begin relative;\n  body1 tower last;",
+        "the orientation of shaft from tower is not defined",
+    ),
     "a position": (
         "  body2 hub1 1;",
         "  body2 hub1 1;\n  relpos 0 0 1;",
