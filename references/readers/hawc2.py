@@ -43,7 +43,7 @@ def read(path: Path, options: ReadingOptions) -> Stations:
     file = StFile(str(path))
     subset = subset or next((a, b) for a, data in file.main_data_sets.items() for b in data)
     rows = file.main_data_sets[subset[0]][subset[1]]
-    table = dict(zip(file.cols, rows.T, strict=False))
+    table = dict(zip(file.cols, rows.T, strict=True))
     r = table["r"]
     curve, twist, s = straight(r), np.zeros(len(r)), r
     if body is not None:

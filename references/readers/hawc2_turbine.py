@@ -290,7 +290,7 @@ def _part(path: Path, name: str, body: Any, StFile: Any) -> Part:
     file = StFile(str(sibling_file(path, str(table.filename[0]))))
     subset = tuple(int(v) for v in table.set[:2]) if "set" in table.contents else (1, 1)
     rows = file.main_data_sets[subset[0]][subset[1]]
-    p = dict(zip(file.cols, rows.T, strict=False))
+    p = dict(zip(file.cols, rows.T, strict=True))
     points = np.array([line.values[1:5] for line in _sections(body.c2_def, "sec")], float)
     if "E" not in p or points[:, [0, 1, 3]].any() or any(p[c].any() for c in ("x_cg", "y_cg", "x_e", "y_e", "pitch")):
         raise NotReadError(f"{name}: not along its z axis, or with centres aside: not weighed a second time")

@@ -8,10 +8,12 @@ import pytest
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.machines import towers
+from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.hawc2 import turbine as hawc2
 from southwell.core.space.spatial import rotation
 from southwell.references.readers import NotReadError, ReadingOptions, hawc2_turbine
 from southwell.references.readers import hawc2 as second
+from southwell.references.readers import read as read_again
 from southwell.tests.support import htc_decks as deck
 
 
@@ -94,6 +96,9 @@ def test_other_lengths_are_stated(tmp_path: Path) -> None:
     assert np.trapezoid(reading.blade.mass[:, 0, 0], reading.blade.stations) == pytest.approx(1275.0 * 1.0045)
 
 
+FPM_DIAGONAL = (0, 6, 11, 15, 18, 20)
+"""Places of the diagonal in the upper triangle of a 6×6 matrix, row by row."""
+
 ROWS = {
     "shear": (["0 10 0 0 0 0 0 0 1 1 1e16 1e16 1e16 0 1 1e16 0 0 0"] * 2, "line 3: k_x: 0: it must be positive"),
     "beginning": (deck.rigid(1.0)[1:] * 2, "line 3: r: 1: the first station is the root; begin at 0"),
@@ -116,3 +121,20 @@ def test_an_htc_that_only_continues_in_others(tmp_path: Path) -> None:
     assert hawc2.is_turbine(main)
     np.testing.assert_array_equal(hawc2.read(main).turbine.hub, hawc2.read(path).turbine.hub)
     np.testing.assert_array_equal(readers.read(main).mass, readers.read(path).mass)
+
+
+def test_a_second_reading_of_tables_of_both_widths_is_not_a_wrong_one(tmp_path: Path) -> None:
+    """wetb keeps the columns of the last table of a file only."""
+    pytest.importorskip("weio")
+    path = tmp_path / "blade.st"
+    full = [
+        f"{r} 100 0 0 0.1 0.2 0 0 0 " + " ".join("1e9" if k in FPM_DIAGONAL else "0" for k in range(21))
+        for r in (0, 20)
+    ]
+    path.write_text("#1 both\n$1 3\n" + "\n".join(deck.ROWS["blade1"]) + "\n$2 2\n" + "\n".join(full) + "\n")
+    for subset, mass in (((1, 1), 1275.0), ((1, 2), 2000.0)):
+        blade = readers.read(path, Mount(subset=subset))
+        assert np.trapezoid(blade.mass[:, 0, 0], blade.stations) == pytest.approx(mass)
+    assert read_again("HAWC2", path, ReadingOptions(subset=(1, 2))).s[-1] == 20.0
+    with pytest.raises(NotReadError, match="ValueError: zip"):
+        read_again("HAWC2", path, ReadingOptions(subset=(1, 1)))
