@@ -43,7 +43,7 @@ def read(path: Path, options: ReadingOptions) -> Stations:
     file = StFile(str(path))
     subset = subset or next((a, b) for a, data in file.main_data_sets.items() for b in data)
     rows = file.main_data_sets[subset[0]][subset[1]]
-    table = dict(zip(file.cols, rows.T, strict=False))
+    table = dict(zip(file.cols, rows.T, strict=True))
     r = table["r"]
     curve, twist, s = straight(r), np.zeros(len(r)), r
     if body is not None:
@@ -53,11 +53,14 @@ def read(path: Path, options: ReadingOptions) -> Stations:
 
 
 def _blade(htc: Any) -> Any:
-    bodies = [v for k, v in htc.new_htc_structure.contents.items() if k.startswith("main_body")]
-    for body in bodies:
-        if str(body.name[0]).lower().startswith("blade") and "c2_def" in body.keys():  # noqa: SIM118
-            return body
-    raise NotReadError("wetb finds no main_body whose name begins with blade")
+    bodies = {str(v.name[0]).lower(): v for k, v in htc.new_htc_structure.contents.items() if k.startswith("main_body")}
+    blades = [n for n, body in bodies.items() if n.startswith("blade") and "c2_def" in body.keys()]  # noqa: SIM118
+    if not blades:
+        raise NotReadError("wetb finds no main_body whose name begins with blade")
+    orientation = htc.new_htc_structure.contents.get("orientation")
+    relatives = [part.contents for part in orientation.contents.values()] if orientation else []
+    mounted = {str(r[key].values[0]).lower() for r in relatives for key in ("body2", "mbdy2") if key in r}
+    return bodies[next((name for name in blades if name in mounted), blades[0])]
 
 
 def sibling_file(htc: Path, name: str) -> Path:

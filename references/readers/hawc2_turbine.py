@@ -240,9 +240,9 @@ def _assembled(path: Path, structure: Any, StFile: Any) -> Machine:
     unattached = [name for name in parents if not any(name in chain for chain in below.values())]
     if unattached:
         raise NotReadError(f"{unattached[0]} carries no blade: bodies beside the others are not weighed a second time")
-    shaft = next((name for name in below[blades[0]] if name in axis_of), None)
+    shaft = next((n for n in below[blades[0]] if n in axis_of and all(n in chain for chain in below.values())), None)
     if shaft is None:
-        raise NotReadError("no ini_rotvec_d1: the rotor's axis is not read a second time")
+        raise NotReadError("no ini_rotvec_d1 of a shaft: the rotor's axis is not read a second time")
     names = list(dict.fromkeys(name for chain in below.values() for name in chain))
     parts = {name: _part(path, name, bodies[name], StFile) for name in names if name not in blades}
     ends = tuple(lump for lump in parts[tower].lumped if lump[0] == len(parts[tower].z) - 1)
@@ -290,7 +290,7 @@ def _part(path: Path, name: str, body: Any, StFile: Any) -> Part:
     file = StFile(str(sibling_file(path, str(table.filename[0]))))
     subset = tuple(int(v) for v in table.set[:2]) if "set" in table.contents else (1, 1)
     rows = file.main_data_sets[subset[0]][subset[1]]
-    p = dict(zip(file.cols, rows.T, strict=False))
+    p = dict(zip(file.cols, rows.T, strict=True))
     points = np.array([line.values[1:5] for line in _sections(body.c2_def, "sec")], float)
     if "E" not in p or points[:, [0, 1, 3]].any() or any(p[c].any() for c in ("x_cg", "y_cg", "x_e", "y_e", "pitch")):
         raise NotReadError(f"{name}: not along its z axis, or with centres aside: not weighed a second time")

@@ -40,11 +40,15 @@ Array = NDArray[np.float64]
 
 NAME = "windIO"
 ENTRIES = tuple(f"K{i + 1}{j + 1}" for i, j in zip(*UPPER, strict=True))
+INERTIA = ("mass", "cm_x", "cm_y", "i_edge", "i_flap", "i_plr", "i_cp")
 STRAINS = {"K11": SHEAR_Z, "K22": SHEAR_Y, "K33": AXIAL, "K66": TORSION}
 """Entries that may be missing or zero in a file, and the strain that is then rigid, in the order of ``core.blade``."""
 
 FAR = 1.0
 """Largest plausible twist, rad: windIO 1 files with a larger value give it in degrees, as in windIO 2."""
+
+UNEVEN = 0.01
+"""Difference between grid and fraction of arc length of the reference axis that is stated."""
 
 MIN_SPACING = 1e-9
 """Grid points closer than this fraction of the length coincide."""
@@ -76,13 +80,25 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     eta, stiffness, mass, zero_strains = (_lists if layout.version == 2 else _rows)(layout.elastic)
     name = top.find("name")
     blade_name = name.word() if name else path.stem
-    blade = beamdyn.assemble(blade_name, path, _axis(layout), eta, stiffness, mass, mounted)
+    axis = _axis(layout)
+    blade = beamdyn.assemble(blade_name, path, axis, eta, stiffness, mass, mounted)
     blade = replace(blade, stiffness=rigid(blade.stiffness, *zero_strains), tip_mass=_tip(layout.elastic))
     notes = ["reference axis and twist by PCHIP, sampled at their own points and the stations"]
+    grid, z = (layout.axis.get("z", key).numbers() for key in ("grid", "values"))
+    at = np.interp(z, axis.z, axis.arc) / axis.arc[-1]
+    if abs(at - grid)[k := int(np.argmax(abs(at - grid)))] > UNEVEN:
+        notes.append(
+            f"grid {grid[k]:.3g} of the reference axis is at {at[k]:.3g} of its length, where windIO has them equal"
+        )
     if mounted.assumption:
         notes.append(mounted.assumption)
     if layout.version == 1 and layout.degrees == 1.0:
         notes.append(f"twist is in radians in windIO 1; this one goes beyond {FAR:g} and was taken for degrees")
+    twist = np.abs(layout.twist.get("values").numbers()).max()
+    if layout.version == 2 and 0 < twist <= FAR:
+        notes.append(
+            f"largest twist {twist:.3g}°: windIO 2 has degrees; check that twist and cone_angle are not in radians"
+        )
     if zero_strains:
         keys = ", ".join(key for key, i in STRAINS.items() if i in zero_strains)
         notes.append(f"{keys} zero or not given: those strains are rigid")
@@ -117,7 +133,10 @@ def _hub(top: Field, layout: Layout) -> Mount:
     hub = hub.find("outer_shape_bem") or hub
     diameter, cone = hub.find("diameter"), hub.find("cone_angle")
     orientation = top.find("assembly", "rotor_orientation") if top.find("assembly") else None
-    upwind = orientation is None or orientation.word().lower() == "upwind"
+    word = orientation.word().lower() if orientation else "upwind"
+    if orientation and word not in ("upwind", "downwind"):
+        raise CaseError(f"{orientation.at}: {orientation.word()}: give upwind or downwind")
+    upwind = word == "upwind"
     radians = cone.number() * (1.0 if layout.version == 1 else np.pi / 180) if cone else None
     return Mount(
         hub_radius=diameter.number() / 2 if diameter else None,
@@ -190,7 +209,9 @@ def _rows(elastic: Field) -> SectionLists:
 
 def _lists(elastic: Field) -> SectionLists:
     """windIO 2: stations, stiffness and mass in its axes, and the rigid strains in the order of ``core.blade``."""
-    matrix = elastic.get("stiffness_matrix")
+    matrix, inertia = elastic.get("stiffness_matrix"), elastic.get("inertia_matrix")
+    _only(matrix, ENTRIES, "the upper triangle, K11 … K66")
+    _only(inertia, INERTIA, ", ".join(INERTIA))
     grids = [_grid(matrix)]
     entries = np.zeros((len(grids[0]), 21))
     for k, key in enumerate(ENTRIES):
@@ -201,10 +222,15 @@ def _lists(elastic: Field) -> SectionLists:
             raise CaseError(f"{matrix.at}: no {key}: a blade must resist bending; add it")
     stiffness, zero_strains = _loose(symmetric(entries), matrix)
     stiffness = _checked(stiffness, fault, matrix.get("grid"))
-    inertia = elastic.get("inertia_matrix")
     grids.append(_grid(inertia))
     mass = _checked(_mass(inertia), mass_fault, inertia.get("mass"))
     return *_together(grids, [stiffness, mass]), zero_strains
+
+
+def _only(matrix: Field, entries: tuple[str, ...], names: str) -> None:
+    """Check that a matrix has no other entries."""
+    if others := [key for key in matrix.names() if key not in ("grid", *entries)]:
+        raise CaseError(f"{matrix.at}: {others[0]}: not an entry in windIO 2, which has {names}: correct the key")
 
 
 def _loose(stiffness: Array, field: Field) -> tuple[Array, tuple[int, ...]]:
@@ -267,7 +293,7 @@ def _tip(elastic: Field) -> Array:
     if point_mass is None:
         return out
     field = point_mass.get("mass")
-    at, masses = point_mass.get("grid").numbers(), field.numbers()
+    at, masses = point_mass.get("grid").numbers(), _paired(field.numbers(), field, point_mass)
     for k, (where, m) in enumerate(zip(at, masses, strict=True)):
         if m and abs(where - 1) > MIN_SPACING:
             raise CaseError(

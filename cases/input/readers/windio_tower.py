@@ -42,14 +42,16 @@ def read(path: Path) -> tuple[Tower, Source]:
     shape = tower.find("outer_shape") or tower.get("outer_shape_bem")
     structure = tower.find("structure") or tower.get("internal_structure_2d_fem")
     axis = shape.find("reference_axis") or tower.get("reference_axis")
-    heights = axis.get("z", "values").numbers()
-    height = float(heights[-1] - heights[0])
-    if height <= 0:
-        raise CaseError(f"{axis.get('z').at}: the top is not above the base; correct the values")
+    z, sideways = axis.get("z"), [part for part in map(axis.find, "xy") if part]
+    if (np.diff(z.get("values").numbers()) <= 0).any():
+        raise CaseError(f"{z.at}: does not rise from the base to the top; correct the values")
+    if inclined := next((part for part in sideways if np.ptp(part.get("values").numbers()) > 0), None):
+        raise CaseError(f"{inclined.at}: the tower is not vertical, which is not supported")
     diameter, layers = shape.get("outer_diameter"), structure.get("layers").parts()
-    grids = [field.get("grid").numbers() for field in (diameter, *(layer.get("thickness") for layer in layers))]
-    points = np.unique(np.concatenate(grids))
+    grids = [field.get("grid").numbers() for field in (z, diameter, *(layer.get("thickness") for layer in layers))]
+    points = np.unique(np.concatenate(grids).round(9))
     eta = np.unique(np.concatenate([np.linspace(a, b, PARTS + 1) for a, b in pairwise(points)]))
+    heights = _at(z, eta)
     materials = {part.get("name").word(): part for part in top.get("materials").parts()}
     outer_radius = 0.5 * _at(diameter, eta)
     EI, EA, GJ, mass, rotary = (np.zeros(len(eta)) for _ in range(5))
@@ -73,7 +75,7 @@ def read(path: Path) -> tuple[Tower, Source]:
     try:
         beam = Blade(
             path.stem,
-            eta * height,
+            heights - heights[0],
             section_stiffness(EA, GJ, EI, EI),
             section_mass(factor * mass, rotary, rotary),
             0 * eta,

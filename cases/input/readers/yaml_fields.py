@@ -1,5 +1,6 @@
 """Fields of a YAML file with their line numbers."""
 
+from collections import Counter
 from dataclasses import dataclass
 from typing import Any, cast
 
@@ -112,6 +113,14 @@ class Field:
         """Position of item ``k`` of a list, for a message."""
         return _at(self.text, self._items()[k], self.name)
 
+    def names(self) -> tuple[str, ...]:
+        """The keys of a mapping.
+
+        Raises:
+            CaseError: if it is not a mapping.
+        """
+        return tuple(self._keys())
+
     def _items(self) -> list[yaml.Node]:
         if not isinstance(self.node, yaml.SequenceNode):
             raise CaseError(f"{self.at}: expected a list: correct it")
@@ -122,7 +131,11 @@ class Field:
             raise CaseError(f"{self.at}: is in another file ({self.node.value}): insert its text here")
         if not isinstance(self.node, yaml.MappingNode):
             raise CaseError(f"{self.at}: expected keys with values: check the indentation")
-        return {str(key.value): value for key, value in self.node.value}
+        out = {str(key.value): value for key, value in self.node.value}
+        if len(out) < len(self.node.value):
+            ((repeated, _),) = Counter(str(key.value) for key, _ in self.node.value).most_common(1)
+            raise CaseError(f"{self.at}: key {repeated} is given twice: remove one")
+        return out
 
 
 def fields(text: Text) -> Field:

@@ -23,8 +23,8 @@ from ..matrices import HAWC2, about, bending, between, fault, in_axes, rotated, 
 from ..openfast.elastodyn import complete
 from ..source import Mount, Reading, Source
 from ..text import ROUNDING, Table, Text, first_numbers, leading, load, table
-from . import bodies
-from .orientation import mounting
+from . import bodies, c2_def
+from .orientation import Relative, mounting, relatives
 from .parts import of_file
 
 Array = NDArray[np.float64]
@@ -38,6 +38,9 @@ AXES = (
     "matrices brought from elastic, shear and mass centres to the half-chord line"
 )
 ALONE = "tower, nacelle, shaft and hub of the htc are not part of the blade"
+STRETCH = 1e-4
+"""Relative difference of the lengths of structural file and c2_def that is stated."""
+
 _SET, _SUBSET = re.compile(r"\s*#\s*(\d+)"), re.compile(r"\s*\$\s*(\d+)\s+(\d+)")
 
 
@@ -68,12 +71,17 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     stations, curve, twist = r, np.zeros((0, 3)), np.zeros(len(r))
     stiffness, mass = stiffness_of(columns), mass_of(columns)
     if body is not None:
-        stations, curve, twist, at, (deviation, angle) = bodies.half_chords(body, r)
+        stations, curve, twist, at, (deviation, angle) = c2_def.half_chords(body, r)
         stiffness, mass = between(r, stiffness, at), between(r, mass, at)
         notes.append(
             f"stations: {len(r)} of the structural file and {len(at) - len(r)} more of c2_def; between them curve and twist "
             f"stray from its Akima splines by up to {deviation:.1g} m and {np.degrees(angle):.1g}°"
         )
+        if abs(stations[-1] / r[-1] - 1.0) > STRETCH:
+            notes.append(
+                f"positions r of the structural file times {stations[-1] / r[-1]:.6g}, so that they end with c2_def's arc, as "
+                "in HAWC2"
+            )
         notes.append(
             "section planes are perpendicular to the half-chord line, rotated from the blade axes by the smallest angle"
         )
@@ -132,21 +140,28 @@ def contents(path: Path, mount: Mount) -> Contents:
         htc = load(mount.main)
     if htc is not None:
         commands = bodies.commands(htc)
-        body = bodies.body_named(htc, commands, "blade")
-        file_mount = mounting(commands, next(c.words[1].lower() for c in body if c.words[0] == "name"))
+        by_child = relatives(commands)
+        name, body = bodies.body_named(htc, commands, "blade", by_child)
+        _whole(htc, name, by_child)
+        file_mount = mounting(commands, name)
         file, stated_subset = bodies.properties(htc, body)
         subset = subset or stated_subset
         text = text or load(file)
     assert text is not None
     columns = _subset(text, subset)
     r = columns["r"]
-    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
-    columns.need(
-        np.arange(len(r)) > 0 if r[0] else np.ones(len(r), bool), "r", r, "the first station is the root; begin at 0"
-    )
     rises = np.concatenate([[True], np.diff(r) > ROUNDING * abs(r[-1])])
     columns.need(rises, "r", r, "not beyond the previous station: sort them and remove duplicates")
     return Contents(columns, body, file_mount, (text.path, *([htc.path] if htc else [])))
+
+
+def _whole(htc: Text, name: str, by_child: dict[str, Relative]) -> None:
+    """Check that a main_body is a whole blade."""
+    for child, block in by_child.items():
+        if name == block.parent or (name == child and block.parent.startswith("blade")):
+            raise CaseError(
+                f"{htc.path}: {child} is on {block.parent}: a blade of several bodies is not supported: give one main_body"
+            )
 
 
 def sections(text: Text, subset: tuple[int, int] | None) -> tuple[Array, Array, Array]:
@@ -165,7 +180,15 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
         if match := _SET.match(line):
             current = int(match[1])
         elif match := _SUBSET.match(line):
+            if (current, int(match[1])) in heads:
+                raise CaseError(
+                    f"{text.at(k)}: set {current}, subset {match[1]}: there already is one: renumber or remove it"
+                )
             heads[current, int(match[1])] = (k, int(match[2]))
+    if not heads:
+        raise CaseError(
+            f"{text.path}: no line that begins with $, set and number of rows: check that it is the right file"
+        )
     if subset is None and len(heads) > 1:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
         raise CaseError(
@@ -174,15 +197,23 @@ def _subset(text: Text, subset: tuple[int, int] | None) -> Table:
     subset = subset or next(iter(heads))
     if subset not in heads:
         names = ", ".join(f"{a}:{b}" for a, b in heads)
-        raise CaseError(f"{text.path}: no set {subset[0]}, subset {subset[1]}: it has {names}: correct --subset")
+        raise CaseError(
+            f"{text.path}: no set {subset[0]}, subset {subset[1]}: it has {names}: correct --subset or the htc's set"
+        )
     k, count = heads[subset]
     first = first_numbers(text, k + 1)
     wide = first < len(text.lines) and len(leading(text.lines[first])) > (len(PLAIN) + len(FULL)) // 2
     columns = table(text, first, count, FULL if wide else PLAIN)
-    columns.positive(
-        "m", *(("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "A"))
+    stiffness = (
+        ("K11", "K22", "K33", "K44", "K55", "K66") if wide else ("E", "G", "I_x", "I_y", "I_p", "k_x", "k_y", "A")
     )
-    columns.positive("ri_x", "ri_y", *(() if wide else ("k_x", "k_y")), zero=True)
+    columns.positive("m", *stiffness)
+    columns.positive("ri_x", "ri_y", zero=True)
+    r, row = columns["r"], np.arange(count)
+    r[0] = 0.0 if abs(r[0]) <= ROUNDING * abs(r[-1]) else r[0]
+    columns.need((row > 0) | (r == 0), "r", r, "the first station is the root; begin at 0")
+    columns.need(r >= np.concatenate([[0.0], r[:-1]]), "r", r, "before the previous station: sort them")
+    columns.need((row + 1 < count) | (r > 0), "r", r, "the last station is the end: give two or more")
     return columns
 
 

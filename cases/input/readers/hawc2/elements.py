@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from .....core.blade import Blade
 from ..source import Mount
 from ..text import Table
-from . import bodies
+from . import c2_def
 from .blade import contents, mass_of, stiffness_of
 
 Array = NDArray[np.float64]
@@ -32,7 +32,7 @@ def with_elements(blade: Blade, path: Path, mount: Mount) -> Blade | None:
     columns, body, _, _ = contents(path, mount)
     if body is None:
         return None
-    c2 = bodies.points(body)
+    c2 = c2_def.blade_points(body)
     arc = np.concatenate([[0.0], np.cumsum(np.linalg.norm(np.diff(c2[:, :3], axis=0), axis=1))])
     r = arc * (columns["r"][-1] / arc[-1])
     averaged = _averaged(columns, r)

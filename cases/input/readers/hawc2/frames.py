@@ -115,8 +115,7 @@ def _hub(path: Path, split: Parts, pose: dict[str, Array], axis: Array, tilt: fl
     centres, mounts, azimuths = [], [], []
     for name in split.blades:
         root, along = pose[name][:3, 3], pose[name][:3, 2]
-        across = np.linalg.lstsq(np.stack([axis, -along], axis=-1), root - origin, rcond=None)[0]
-        centre = origin + across[0] * axis
+        centre = origin + orientation.hub_centre(root - origin, pose[name][:3, :3], axis)
         mount = orientation.mounted(root - centre, pose[name][:3, :3], axis)
         if mount is None:
             raise CaseError(f"{path}: {name}: its axis does not meet that of {split.shaft}: not supported")

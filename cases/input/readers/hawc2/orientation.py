@@ -6,6 +6,7 @@ the body that turns with it, and its speed. A body ends at the last point of its
 *How 2 HAWC2, the user's manual*, Risø-R-1597, ch. 6.
 """
 
+from collections import Counter
 from collections.abc import Sequence
 from dataclasses import dataclass
 
@@ -27,6 +28,9 @@ UNIT = 1e-3
 
 ROUNDED = 12
 """Decimals of an angle in rad: the product of rotations by right angles is exact to about 1e-16 only."""
+
+ROUNDING = 1e-9
+"""Rounding of positions, m."""
 
 ALONG = 1e-3
 """Largest distance of the blade's root from the line through the hub along the blade, as a fraction of the hub radius."""
@@ -53,9 +57,10 @@ class Relative:
 
 
 def relatives(commands: Sequence[Command]) -> dict[str, Relative]:
-    """The ``relative`` blocks that are understood, by the name of body2."""
-    parsed = (_relative(block) for _, block in blocks(commands, "relative"))
-    return {block.child: block for block in parsed if block}
+    """The ``relative`` blocks that are understood, by the name of body2; none of a body that has several."""
+    parsed = [block for _, commands in blocks(commands, "relative") if (block := _relative(commands))]
+    count = Counter(block.child for block in parsed)
+    return {block.child: block for block in parsed if count[block.child] == 1}
 
 
 def base(commands: Sequence[Command]) -> tuple[str, Array] | None:
@@ -89,14 +94,18 @@ def mounting(commands: Sequence[Command], blade: str) -> Mount | None:
         if block is None:
             return None
         if block.axis is not None and body != blade:
-            return mounted(root, axes, block.axis)
-        turns = by_child.get(block.parent)
-        rotor = turns is not None and turns.axis is not None
-        start = _end(bodies.get(block.parent, [])) if block.at_end and not rotor else np.zeros(3)
+            return mounted(root - hub_centre(root, axes, block.axis), axes, block.axis)
+        start = _end(bodies.get(block.parent, [])) if block.at_end else np.zeros(3)
         if start is None:
             return None
         root, axes, body = start + block.axes @ root, block.axes @ axes, block.parent
     return None
+
+
+def hub_centre(root: Array, axes: Array, axis: Array) -> Array:
+    """The point (3,), m, where a blade with axes ``axes`` (3, 3) and its root at ``root`` (3,) m meets the axis through 0."""
+    unit = axis / np.linalg.norm(axis)
+    return np.asarray(np.linalg.lstsq(np.stack([unit, -axes[:, 2]], axis=-1), root, rcond=None)[0][0] * unit)
 
 
 def mounted(root: Array, axes: Array, axis: Array) -> Mount | None:
@@ -107,12 +116,12 @@ def mounted(root: Array, axes: Array, axis: Array) -> Mount | None:
     if axes[:, 1] @ downwind < 0:  # HAWC2's y of a blade points downwind
         downwind = -downwind
     radius = float(root @ along)
-    if radius < 0 or np.linalg.norm(root - radius * along) > ALONG * radius:
+    if radius < -ROUNDING or np.linalg.norm(root - radius * along) > ALONG * radius + ROUNDING:
         return None
     precone = np.arcsin(np.clip(along @ downwind, -1.0, 1.0))
     pitch = np.arctan2(axes[:, 0] @ downwind, axes[:, 1] @ downwind)
     precone, pitch = np.round([precone, pitch], ROUNDED)
-    return Mount(hub_radius=radius, precone=float(precone), pitch=float(pitch))
+    return Mount(hub_radius=max(radius, 0.0), precone=float(precone), pitch=float(pitch))
 
 
 TURNS = ("eulerang", "eulerpar")
@@ -152,7 +161,7 @@ def _relative(block: Body) -> Relative | None:
     axes, axis, speed = np.eye(3), None, 0.0
     for command in block:
         body_number, setting = _which(command)
-        if not setting:
+        if not setting and body_number in ("1", "2"):
             bodies[body_number] = command.words[1:]
         elif body_number == "2" and setting in TURNS:
             rotation_matrix = _turned(setting, command)

@@ -77,6 +77,8 @@ def parts(htc: Text, commands: bodies.Body) -> Parts | str:
     blades = tuple(name for name in by_name if name.startswith("blade") and name in relatives.keys() - carriers)
     if len(blades) < MIN_BLADES:
         return f"the htc has {len(blades)} oriented bodies whose name begins with blade; a turbine needs {MIN_BLADES} or more"
+    if altered := bodies.altered_copy(commands):
+        return altered
     chains = []
     for blade in blades:
         chain = [blade]

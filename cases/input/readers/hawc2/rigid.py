@@ -21,7 +21,7 @@ from ...errors import CaseError
 from ..matrices import between
 from ..source import Unused, unused
 from ..text import Text, load, number
-from . import blade, bodies
+from . import blade, bodies, c2_def
 
 Array = NDArray[np.float64]
 
@@ -103,22 +103,23 @@ def line(htc: Text, name: str, body: bodies.Body) -> Line:
     """
     file, subset = bodies.properties(htc, body)
     r, stiffness, mass = blade.sections(load(file), subset)
-    sections = [c for c in body if c.words[0] == "sec"]
-    points = np.array([bodies.section(c) for c in sections])
-    if len(points) < 2:
-        raise CaseError(f"{htc.path}: {name}: c2_def needs at least two sections")
+    points = c2_def.points(body)
     if np.diff(points[:, 2]).min() < 0 and any(np.abs(mass[:, i, j]).any() for i, j in ((0, 4), (0, 5), (4, 5))):
         raise CaseError(
             f"{file}: x_cg, y_cg, pitch: not zero on {name}, which points along −z: their directions are ambiguous; set "
             "them to zero"
         )
+    if np.abs(points[0, :3]).max() > EVEN * np.abs(points[:, :3]).max():
+        raise CaseError(f"{c2_def.sections(body)[0].at}: sec: {name} does not begin at 0, 0, 0, which is not supported")
     steps = np.linalg.norm(np.diff(points[:, :3], axis=0), axis=1)
     if steps.min() <= 0:
         k = int(steps.argmin()) + 1
-        raise CaseError(f"{sections[k].at}: sec: at the position of the previous section: remove one of them")
+        raise CaseError(
+            f"{c2_def.sections(body)[k].at}: sec: at the position of the previous section: remove one of them"
+        )
     arc = np.concatenate([[0.0], np.cumsum(steps)])
     uniform = all(np.abs(m - m[:1]).max() <= EVEN * np.abs(m).max() for m in (stiffness, mass))
-    if abs(r[-1] - arc[-1]) <= bodies.LENGTHS * arc[-1]:
+    if abs(r[-1] - arc[-1]) <= c2_def.LENGTHS * arc[-1]:
         r = r * (arc[-1] / r[-1])
     elif not uniform:
         raise CaseError(
@@ -170,8 +171,8 @@ def _masses(body: bodies.Body, nodes: Array) -> tuple[tuple[Mass, ...], tuple[Un
         numbers = [v for v in values if v is not None and np.isfinite(v)]
         if len(numbers) < 8 or len(numbers) < len(values):
             raise CaseError(f"{command.at}: concentrated_mass: give node, x, y, z, mass and three moments of inertia")
-        node = round(numbers[0]) - 1
-        if not 0 <= node < len(nodes):
+        node = int(numbers[0]) - 1
+        if node + 1 != numbers[0] or not 0 <= node < len(nodes):
             raise CaseError(f"{command.at}: concentrated_mass: node {numbers[0]:g}: the body has {len(nodes)} nodes")
         if node and not _nodes_are_sections(body):
             raise CaseError(

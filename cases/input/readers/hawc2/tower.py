@@ -13,9 +13,9 @@ from .....core.blade import Blade, BladeError, coupled
 from .....core.turbine.tower import Tower
 from ...errors import CaseError
 from ..source import Source
-from ..text import Text, load, number
-from . import blade, bodies
-from .bodies import LENGTHS
+from ..text import Text, load
+from . import blade, bodies, c2_def, orientation
+from .c2_def import LENGTHS
 
 NAME = "HAWC2 tower"
 AXES = "HAWC2: y downwind, z down; here x = −(its z), z = its y"
@@ -28,10 +28,12 @@ def read(path: Path) -> tuple[Tower, Source]:
         CaseError: naming the file and line at fault.
     """
     htc = load(path)
-    body = bodies.body_named(htc, bodies.commands(htc), "tower")
+    commands = bodies.commands(htc)
+    ground = orientation.base(commands)
+    name, body = bodies.body_named(htc, commands, "tower", ground[:1] if ground else ())
     tower, file = beam(htc, path.stem, body)
     notes = (
-        "clamped at the base, without weight",
+        f"main_body {name}, clamped at the base, without weight",
         "nacelle, shaft and rotor are other bodies of the htc, which are not part of the tower",
     )
     return Tower(tower), Source(NAME, (path, file), AXES, notes, bodies.unused_quantities(body))
@@ -46,11 +48,9 @@ def beam(htc: Text, name: str, body: bodies.Body) -> tuple[Blade, Path]:
     file, subset = bodies.properties(htc, body)
     text = load(file)
     r, stiffness, mass = blade.sections(text, subset)
-    points = np.array([[number(word) for word in c.words[2:6]] for c in body if c.words[0] == "sec"], float)
-    at = next(c.at for c in body if c.words[0] == "sec")
-    if points.ndim != 2 or points.shape[1] != 4 or not np.isfinite(points).all():
-        raise CaseError(f"{at}: sec: give number, x, y, z and twist of every section")
+    points = c2_def.points(body)
     if np.abs(points[:, [0, 1, 3]]).max() > 1e-9 * np.abs(points[:, 2]).max():
+        at = c2_def.sections(body)[0].at
         raise CaseError(f"{at}: sec: the tower is not straight and vertical without twist, which is not supported")
     height = abs(float(points[-1, 2] - points[0, 2]))
     if r[0] != 0 or abs(r[-1] - height) > LENGTHS * height:

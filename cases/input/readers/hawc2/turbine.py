@@ -205,7 +205,11 @@ def _locked(split: Parts) -> tuple[str, ...]:
 
 
 def _gravity(tower: bodies.Body) -> tuple[float, str]:
-    values = [number(c.words[1]) for c in tower if c.words[0] == "gravity" and len(c.words) > 1]
-    if values and values[-1] is not None and np.isfinite(values[-1]):
-        return float(values[-1]), f"{values[-1]:g} m/s² (of the tower)"
-    return GRAVITY, f"{GRAVITY:g} m/s² (HAWC2's)"
+    command = next((c for c in reversed(tower) if c.words[0] == "gravity"), None)
+    if command is None:
+        return GRAVITY, f"{GRAVITY:g} m/s² (HAWC2's)"
+    word = " ".join(command.words[1:2])
+    value = number(word)
+    if value is None or not 0 <= value < np.inf:
+        raise CaseError(f"{command.at}: gravity: {word}: not a number, or negative (upwards): correct it")
+    return value, f"{value:g} m/s² (of the tower)"

@@ -114,6 +114,37 @@ def test_a_cone_in_windio(tmp_path: Path) -> None:
     assert beam.stiffness[k, 4, 4] == pytest.approx(E * np.pi / 64 * (5.0**4 - 4.94**4))
 
 
+def test_heights_in_windio(tmp_path: Path) -> None:
+    """The middle of the grid is 20 m above the base: cones 6 to 4.5 m, 4.5 to 3 m in diameter, with walls of 30 mm."""
+    path = tmp_path / "cone.yaml"
+    text = WINDIO.format(shape="outer_shape", structure="structure", top=3.0)
+    z = "z: {grid: [0.0, 1.0], values: [10.0, 90.0]}"
+    path.write_text(text.replace(z, "z: {grid: [0.0, 0.5, 1.0], values: [10.0, 30.0, 90.0]}"))
+    beam = towers.read(path)[0].beam
+    mass = np.trapezoid(beam.mass[:, 0, 0], beam.stations)
+    area = np.pi * 0.03 * (np.array([20.0, 60.0]) @ np.array([5.25 - 0.03, 3.75 - 0.03]))
+    assert mass == pytest.approx(1.07 * RHO * area, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("axis", "message"),
+    [
+        ("z: {grid: [0.0, 1.0], values: [90.0, 10.0]}", "reference_axis.z: does not rise from the base to the top"),
+        ("z: {grid: [0.0, 0.5, 1.0], values: [10.0, 95.0, 90.0]}", "reference_axis.z: does not rise"),
+        (
+            "x: {grid: [0.0, 1.0], values: [0.0, 8.0]}\n        z: {grid: [0.0, 1.0], values: [10.0, 90.0]}",
+            "reference_axis.x: the tower is not vertical",
+        ),
+    ],
+)
+def test_a_tower_that_does_not_stand_is_refused(tmp_path: Path, axis: str, message: str) -> None:
+    path = tmp_path / "small.yaml"
+    text = WINDIO.format(shape="outer_shape", structure="structure", top=6.0)
+    path.write_text(text.replace("z: {grid: [0.0, 1.0], values: [10.0, 90.0]}", axis))
+    with pytest.raises(CaseError, match=message):
+        towers.read(path)
+
+
 def test_a_file_without_a_tower_is_refused(tmp_path: Path) -> None:
     path = tmp_path / "other.dat"
     path.write_text("nothing\n")

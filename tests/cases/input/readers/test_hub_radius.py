@@ -87,7 +87,7 @@ def test_an_option_counts_more_than_the_htc(tmp_path: Path) -> None:
     ("old", "new"),
     [
         ("mbdy2_ini_rotvec_d1", "; "),
-        ("sec 2 0.0 0.0 2.8 0.0", "sec 2 0.0 0.5 2.8 0.0"),
+        ("sec 2 0.0 0.0 2.8 0.0", "sec 2 0.5 0.0 2.8 0.0"),
         ("body2_eulerang -90.0", "body2_eulerpar 1 -90.0"),
         ("mbdy1 hub1 last", "mbdy1 hub1 2"),
         ("mbdy1 hub1 last", "mbdy1 nowhere last"),

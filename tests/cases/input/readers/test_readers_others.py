@@ -285,6 +285,16 @@ BAD = {
     "st duplicate": (ST, "1.200000e+01", "0.0", ON, r"line 7: r: 0: not beyond the previous station"),
     "st root": (ST, "0.000000e+00\t1.0", "1.0\t1.0", ON, r"line 6: r: 1: the first station is the root"),
     "st subset": (ST, "$1 3", "$7 3", ON, r"no set 1, subset 1: it has 1:7, 1:2: correct --subset"),
+    "st twice": (ST, "$2 3", "$1 3", ON, r"line 9: set 1, subset 1: there already is one: renumber or remove it"),
+    "st factor": (ST, "5.000000e-01\t5.000000e-01", "0\t0.5", ON, r"line 6: k_x: 0: it must be positive"),
+    "htc twice": (
+        HTC,
+        "name shaft ;",
+        "name blade1 ;",
+        Mount(),
+        r"line 16: main_body: there already is one whose name is",
+    ),
+    "htc order": (HTC, "sec 3 ", "sec 4 ", Mount(), r"hawc2.htc: line 26: sec: number 4, but it is section 3"),
     "htc sec": (HTC, "-0.05   10.0", "ten", Mount(), r"hawc2.htc: line 26: sec: not x, y, z and twist"),
     "htc file": (
         HTC,

@@ -54,6 +54,15 @@ BAD: list[tuple[int, str, object, str]] = [
     (2, f"{BLADE}.reference_axis", "straight", "components.blade.reference_axis: expected keys with values"),
     (2, f"{EP}.stiffness_matrix.K55.1", -4.5e9, r"at station 2: diagonal entry 5 is -4.5e\+09: it must be positive"),
     (2, f"{EP}.inertia_matrix.mass.0", -1.0, "at station 1: diagonal entry 1 is -1: it must be positive"),
+    (
+        2,
+        f"{EP}.stiffness_matrix.K54",
+        [1e8] * 3,
+        r"stiffness_matrix: K54: .* upper triangle, K11 … K66: correct the key",
+    ),
+    (2, f"{EP}.inertia_matrix.i_xy", [1.0] * 3, "inertia_matrix: i_xy: not an entry in windIO 2, which has mass, cm_x"),
+    (2, "assembly", {"rotor_orientation": "down-wind"}, "rotor_orientation: down-wind: give upwind or downwind"),
+    (2, f"{EP}.point_mass", {"grid": [0.0, 1.0], "mass": [0.0]}, "point_mass.mass: 1 values for 2 grid points"),
     (2, f"{EP}.stiffness_matrix.K55", None, "stiffness_matrix: no K55: a blade must resist bending"),
     (2, f"{EP}.stiffness_matrix.K33", None, "stiffness_matrix: K33 is missing, although couplings with it are given"),
     (
@@ -95,6 +104,7 @@ def test_the_line_told_is_the_one_with_the_fault(tmp_path: Path) -> None:
             "components: !include blade.yaml\n",
             r"line 1: components: is in another file \(blade.yaml\): insert its text here",
         ),
+        ("components:\n  hub: 1\n  blade: 1\n  blade: 2\n", "line 2: components: key blade is given twice: remove one"),
         ("components:\n\tblade: 1\n", r"line 2: not YAML"),
         ("- 1\n", "expected keys with values"),
     ],
@@ -130,6 +140,21 @@ def test_twist_in_degrees_in_windio_1_is_noticed_and_said(tmp_path: Path) -> Non
     reading = readers.reading(written(tmp_path / "b.yaml", version_1))
     assert_same(reading.blade, expected, 1e-13)
     assert any("taken for degrees" in note for note in reading.source.notes)
+
+
+def test_twist_in_radians_in_windio_2_is_stated(tmp_path: Path) -> None:
+    version_2 = samples()[1]
+    for scale, stated in ((1.0, False), (np.pi / 180.0, True), (0.0, False)):
+        twist = [scale * degrees for degrees in (12.0, 10.0, 7.0, 4.0, 1.0)]
+        data = put(version_2, f"{BLADE}.outer_shape.twist.values", twist)
+        notes = readers.reading(written(tmp_path / "b.yaml", data)).source.notes
+        assert any("largest twist 0.209°: windIO 2 has degrees" in note for note in notes) is stated
+
+
+def test_a_reference_axis_whose_grid_is_not_its_length_is_stated(tmp_path: Path) -> None:
+    data = put(samples()[1], f"{BLADE}.reference_axis.z.values", [0.0, 5.0, 15.0, 28.0, 40.0])
+    notes = readers.reading(written(tmp_path / "b.yaml", data)).source.notes
+    assert any("grid 0.5 of the reference axis is at 0.37" in note for note in notes)  # 15 m of 40 m
 
 
 def test_the_cone_leans_away_from_the_tower(tmp_path: Path) -> None:

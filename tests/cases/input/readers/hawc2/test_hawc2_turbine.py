@@ -167,6 +167,22 @@ LACKING = {
     "a shaft's file": ("filename shaft.st", "filename other.st", "other.st of shaft is not there"),
     "a hub": ("begin main_body;\n  name hub2 ;", "begin main_body;\n  name other ;", "the htc has no main_body hub2"),
     "a blade": ("  body2 blade3 1;", "  body2 other 1;", "the htc has 2 oriented bodies whose name begins with blade"),
+    "a copy's mass": (
+        "name hub2 ;",
+        "name hub2 ;\n  concentrated_mass 2 0 0 0 500 0 0 0 ;",
+        "hub2, a copy_main_body with its own concentrated_mass, is not supported",
+    ),
+    "one orientation": (
+        "begin relative;\n  body1 tower last;",
+        "begin relative;\n  body1 tower last;\n  body2 shaft 1;\n  body2_eulerang 90 0 0;\nend relative;\n"
+        "begin relative;\n  body1 tower last;",
+        "the orientation of shaft from tower is not defined",
+    ),
+    "a position": (
+        "  body2 hub1 1;",
+        "  body2 hub1 1;\n  relpos 0 0 1;",
+        "the orientation of hub1 from tower is not defined",
+    ),
     "fix0": ("begin fix0;", "begin fix2;", "tower is not clamped to the ground by fix0"),
     "a tower on the ground": ("  body tower;\n  inipos", "  body pile;\n  inipos", "the body on the ground is pile"),
 }
@@ -185,6 +201,8 @@ def test_what_lacks_a_body_is_one_blade(tmp_path: Path, name: str) -> None:
         turbines.read(path)
 
 
+HUB_SECTIONS = "nsec 2 ;\n    sec 1 0 0 0 0.0 ;\n    sec 2 0 0 1 0.0"
+
 REFUSED = {
     "no bearing": ("begin bearing1", "begin other", "shaft: no bearing1, bearing2, bearing3 or fix1 holds it"),
     "free pitch": ("begin bearing2", "begin bearing1", r"blade1: it turns freely \(bearing1\) on hub1"),
@@ -197,6 +215,21 @@ REFUSED = {
     "uneven shaft": ("3000 1500 1500", "3000 1500 1900", "moments of inertia of shaft and hubs across the axis differ"),
     "vertical axis": ("mbdy2_eulerang 90 0 0", "mbdy2_eulerang 0 0 0", "shaft: its axis is not horizontal"),
     "no such node": ("mass 2 0 0 -0.1", "mass 3 0 0 -0.1", "node 3: the body has 2 nodes"),
+    "half a node": ("mass 2 0 0 -0.1", "mass 1.5 0 0 -0.1", "node 1.5: the body has 2 nodes"),
+    "number of sections": (HUB_SECTIONS, HUB_SECTIONS.replace("nsec 2", "nsec 3"), "nsec: 3: c2_def has 2 sections"),
+    "section's number": (
+        HUB_SECTIONS,
+        HUB_SECTIONS.replace("sec 2 0", "sec 3 0"),
+        "sec: number 3, but it is section 2",
+    ),
+    "gravity": ("name tower ;", "name tower ;\n  gravity 9,81 ;", "gravity: 9,81: not a number"),
+    "gravity upwards": ("name tower ;", "name tower ;\n  gravity -9.81 ;", "gravity: -9.81: not a number, or negative"),
+    "beginning": (
+        "sec 1 0 0 0 0.0 ;\n    sec 2 0 0 1 ",
+        "sec 1 0 0 0.5 0 ;\n sec 2 0 0 1.5 ",
+        "hub1 does not begin at 0, 0, 0",
+    ),
+    "a text": ("filename shaft.st", "filename small.htc", r"no line that begins with \$, set and number of rows"),
     "direction of an offset": (
         "filename towertop.st",
         "filename aside.st",
