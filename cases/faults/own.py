@@ -79,10 +79,9 @@ def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Descripti
     return tuple(identifiers[code] for code, passes in has_passed.items() if passes and code in identifiers)[:WITNESSES]
 
 
-def chosen(names: Iterable[str]) -> tuple[str, ...]:
-    """All of ``NAMES`` if ``names`` has all that every run seeds; else those that are in both."""
-    names = tuple(names)
-    return NAMES if set(FAST) <= set(names) else tuple(name for name in names if name in NAMES)
+def chosen(names: Sequence[str], own: Sequence[str] = NAMES) -> tuple[str, ...]:
+    """All of the ``own`` faults of a blade or a turbine if ``names`` has all that every run seeds; else those in both."""
+    return tuple(own) if set(FAST) <= set(names) else tuple(name for name in names if name in own)
 
 
 def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse: bool = False) -> list[Control]:

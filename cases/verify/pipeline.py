@@ -183,7 +183,7 @@ def _solved(
     users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
     on_blades = own.chosen(plan.faults) if users_blades else ()
     turbines = [subject for subject in plan.subjects if isinstance(subject, TurbineSubject) and subject.users]
-    on_turbines = own_turbine.chosen(plan.faults) if turbines else ()
+    on_turbines = own.chosen(plan.faults, own_turbine.NAMES) if turbines else ()
     # faults of a blade say nothing of a run on turbines alone
     covered_faults = {
         *on_blades,
@@ -228,7 +228,7 @@ def _solved(
             for subject in (turbines if on_turbines else [])
         ]
         if on_turbines == own_turbine.NAMES:
-            on_own += [trials.submit(own_turbine.reading, subject) for subject in turbines]
+            on_own += [trials.submit(own_reading.run, subject) for subject in turbines]
         for run_own in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
             on_own += [trials.submit(run_own, subject) for subject in users_blades]
         controls = {control.control: control for future in trial_futures for control in future.result()}
