@@ -20,12 +20,12 @@ from . import user_columns
 from .blade_columns import columns
 from .column import Column
 from .settings import setting
-from .subject import PropertyChecks
+from .subject import PropertyChecks, Subject
 from .user_results import UserResults
 
 
 @dataclass(frozen=True)
-class BladeSubject:
+class BladeSubject(Subject):
     """One blade of a case; see ``Subject``."""
 
     case: Case

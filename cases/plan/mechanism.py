@@ -24,12 +24,12 @@ from ..judge.results import Setting
 from ..solve.mechanism import QUANTITIES, answers_at, compared, formula, references
 from ..solve.reference import References
 from .column import Column, unasked
-from .subject import NotABlade
+from .subject import Subject
 from .user_results import UserResults
 
 
 @dataclass(frozen=True)
-class MechanismSubject(NotABlade):
+class MechanismSubject(Subject):
     """A mechanism with its speeds; see ``Subject``.
 
     Attributes:

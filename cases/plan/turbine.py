@@ -33,7 +33,7 @@ from ..solve.turbine_reading import read_again
 from . import linearised
 from .column import Column, unasked
 from .settings import NOT_USED
-from .subject import NOT_CHECKED, NotABlade, PropertyChecks
+from .subject import PropertyChecks, Subject
 from .user_results import UserResults
 
 MODES, TARGET = 8, 1e-3
@@ -41,7 +41,7 @@ MODES, TARGET = 8, 1e-3
 
 
 @dataclass(frozen=True)
-class TurbineSubject(NotABlade):
+class TurbineSubject(Subject):
     """A turbine with its speeds; see ``Subject``.
 
     Attributes:
@@ -154,7 +154,7 @@ class TurbineSubject(NotABlade):
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``; a second reading of OpenFAST's or HAWC2's files."""
         if self.deck is None:
-            return NOT_CHECKED
+            return PropertyChecks()
         rows, weighed = self.second_reading(self.deck)
         if weighed is None:
             return PropertyChecks(rows)

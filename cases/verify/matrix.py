@@ -22,7 +22,7 @@ from ..judge.cells import Rows, failing
 from ..judge.results import BudgetEntry, Cell, Diagnosed, Level, Origin, Planned, PropertyCheck, Run
 from ..plan.column import Column, ColumnError
 from ..plan.names import unique
-from ..plan.subject import NOT_CHECKED, PropertyChecks, Subject, asked_about, speeds_of_blades
+from ..plan.subject import PropertyChecks, Subject, asked_about, speeds_of_blades
 from ..plan.user_results import UserResults, check
 from ..solve import error_budget
 
@@ -48,14 +48,13 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Task:
-    """One task for one blade: core's references (no column), a column, or the error budget."""
+    """One task for one subject: core's references (no column), or a column."""
 
     subject: Subject
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
+    properties: PropertyChecks
     column: Column | None = None
-    error_budget: Callable[[], list[BudgetEntry]] | None = None
-    properties: PropertyChecks = NOT_CHECKED
 
     @property
     def label(self) -> str:
@@ -125,7 +124,8 @@ def run(
                         pending[executor.submit(column, points, answer[column.effects])] = replace(task, column=column)
                 if parts and not split and all(t.column for t in pending.values()):
                     # after all columns: they are short, so that no worker is idle at the end
-                    split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
+                    budgets = [(task, task.subject.error_budget()) for task in plans]
+                    split = [(task, executor.submit(budget)) for task, budget in budgets if budget]
                     weighed = [executor.submit(weigh) for task in plans for weigh in task.properties.tasks]
                 finished = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(finished, total, _running(pending), tuple(new[0]), tuple(new[1])))
@@ -210,9 +210,8 @@ def _tasks(
         descriptions = [replace(code, refused=code.refused[blades : blades + 1]) for code in codes]
         blades += subject.blade is not None
         columns = dated(subject.columns(descriptions, limits(subject), user_results), codes)
-        checks = subject.property_checks(descriptions, limits(subject)) if parts else NOT_CHECKED
-        core = subject.references(columns)
-        out.append(_Task(subject, columns, core, error_budget=subject.error_budget(), properties=checks))
+        checks = subject.property_checks(descriptions, limits(subject)) if parts else PropertyChecks()
+        out.append(_Task(subject, columns, subject.references(columns), checks))
     return out
 
 
@@ -225,11 +224,9 @@ def dated(columns: Sequence[Column], codes: Sequence[Description]) -> tuple[Colu
 
 def _parts(task: _Task, parts: list[BudgetEntry], rows: dict[tuple[str, str], Rows]) -> list[BudgetEntry]:
     """The error budget of core, with the uncertainties of the compared numbers."""
-    return parts + error_budget.uncertain(task.subject.name, parts, _cells(task, rows))
-
-
-def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
-    return [cell for column in task.columns for cell in rows[task.subject.name, column.name][0]]
+    name = task.subject.name
+    cells = [cell for column in task.columns for cell in rows[name, column.name][0]]
+    return parts + error_budget.uncertain(name, parts, cells)
 
 
 def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:
