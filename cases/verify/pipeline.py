@@ -119,7 +119,7 @@ def planned(request: Request, observer: Observer) -> Plan:
     added_results = [measurements.user_results(text, defaults) for text in request.add]
     measurements.check(added_results, request.data_uncertainty, request.input_uncertainty)
     names.unique(selection, codes, added_results)
-    user_results.check(added_results, speeds_of_blades(selection), [c.name for c in codes])
+    user_results.check(added_results, speeds_of_blades(selection))
     linearised.check(added_results, [subject.name for subject in selection if isinstance(subject, TurbineSubject)])
     empty_run = Run(
         cells=(),
