@@ -197,8 +197,7 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         blade = convert(tables, CaseFile, where).blade
         name = f"{text.name}/{label}" if label else text.name
         try:
-            as_given, unused_values = blade.read(name, folder)
-            file = blade.file_read(name, folder)
+            as_given, unused_values, file = blade.read(name, folder)
         except BladeError as error:
             raise CaseError(f"{where}: blade: {error}") from error
         variants.append(Variant(name, as_given, speeds, unused_values, file))
