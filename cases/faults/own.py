@@ -60,11 +60,6 @@ class _Witnessed(BladeSubject):
         return [column for column in columns if column.head.role == "code" and column.head.shares == "nothing"]
 
 
-def is_users(subject: Subject) -> bool:
-    """Whether a subject is a blade that does not come with the package."""
-    return isinstance(subject, BladeSubject) and subject.users
-
-
 def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Description]) -> tuple[str, ...]:
     """What to ask of ``codes`` that share nothing with core and pass at the highest speed in every mode.
 

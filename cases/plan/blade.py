@@ -4,12 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
-from pathlib import Path
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
-from .. import data
 from ..input.readers import BladeFile
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, PropertyCheck, Setting
@@ -40,12 +38,6 @@ class BladeSubject(Subject):
     def path(self) -> str:
         """See ``Subject``."""
         return self.case.path
-
-    @property
-    def users(self) -> bool:
-        """Whether the blade does not come with the package."""
-        package = Path(data.__file__ or "").parent
-        return package not in Path(self.path).parents
 
     @property
     def points(self) -> tuple[float, ...]:

@@ -7,11 +7,13 @@ references of every subject, then its columns.
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
+from .. import data
 from ..input.readers import BladeFile
 from ..judge.results import BudgetEntry, PropertyCheck, Setting
 from .column import Column
@@ -48,6 +50,11 @@ class Subject(ABC):
     tables: tuple[str, ...] = ()
     blade: Blade | None = None
     file: BladeFile | None = None
+
+    @property
+    def users(self) -> bool:
+        """Whether it does not come with the package."""
+        return Path(data.__file__ or "").parent not in Path(self.path).parents
 
     @abstractmethod
     def setting(self) -> Setting:

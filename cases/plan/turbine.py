@@ -16,7 +16,6 @@ from ...core.turbine.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
 from ...references.readers.turbine_mass import Weighed
-from .. import data
 from ..input import readers
 from ..input.errors import CaseError
 from ..input.readers.source import Mount, Source
@@ -79,11 +78,6 @@ class TurbineSubject(Subject):
                 f"{self.path}: two blades: none of the codes solves them on a tower; `southwell campbell` does, by Floquet's "
                 "and Hill's methods, and --blade-only verifies one blade"
             )
-
-    @property
-    def users(self) -> bool:
-        """Whether the turbine does not come with the package."""
-        return Path(data.__file__ or "").parent not in Path(self.path).parents
 
     @property
     def deck(self) -> Path | None:

@@ -180,7 +180,7 @@ def _solved(
     state = tuple(f"{name} {version}" for name, version in sorted(plan.empty_run.versions.items()))
     serial = request.execution.threads or request.execution.workers == 0
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
-    users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
+    users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and subject.users]
     on_blades = own.chosen(plan.faults) if users_blades else ()
     turbines = [subject for subject in plan.subjects if isinstance(subject, TurbineSubject) and subject.users]
     on_turbines = own.chosen(plan.faults, own_turbine.NAMES) if turbines else ()

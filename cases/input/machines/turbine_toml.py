@@ -13,7 +13,7 @@ from ....core.turbine.turbine import Drivetrain, Teeter, Turbine, shaft_pose
 from .. import readers, toml
 from ..errors import CaseError
 from ..readers.matrices import BEAMDYN, in_axes
-from ..readers.openfast import elastodyn_tower
+from ..readers.openfast import elastodyn, elastodyn_tower
 from ..readers.source import Mount, Source
 from ..readers.text import load
 from .schema import DeckData, HubData, MachineData, NacelleData, RotorData, SupportData, Three, TowerData
@@ -129,20 +129,9 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
 def _blade(path: Path, data: RotorData, mount: Mount) -> readers.Reading:
     """The blade; ``mount`` overrides the file's table ``rotor``, which overrides the blade's file."""
 
-    def radians(option: float | None, degrees: float | None) -> float | None:
-        return option if option is not None or degrees is None else float(np.radians(degrees))
-
-    combined = Mount(
-        main=mount.main,
-        length=mount.length if mount.length is not None else data.length,
-        hub_radius=mount.hub_radius if mount.hub_radius is not None else data.hub_radius,
-        precone=radians(mount.precone, data.precone),
-        pitch=radians(mount.pitch, data.pitch),
-        subset=mount.subset,
-        multipliers=mount.multipliers,
-        offsets=mount.offsets,
-    )
-    return readers.reading(path.parent / data.blade, combined)
+    precone, pitch = (None if angle is None else float(np.radians(angle)) for angle in (data.precone, data.pitch))
+    of_file = Mount(length=data.length, hub_radius=data.hub_radius, precone=precone, pitch=pitch)
+    return readers.reading(path.parent / data.blade, elastodyn.complete(mount, of_file))
 
 
 def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ...]]:
