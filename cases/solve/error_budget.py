@@ -138,9 +138,9 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
             ("discretisation", "codes, refined", "code"),
             ("rounding", "printed digits", "table"),
         ):
-            sizes = [c.uncertainty or 0.0 for c in comparable if c.role == role]
-            if role == "code":  # an error bound given by a code is not a discretisation error
-                sizes = [c.uncertainty or 0.0 for c in comparable if c.role == role and c.order is not None]
+            of_role = [c for c in comparable if c.role == role]
+            # an error bound given by a code is not a discretisation error
+            sizes = [c.uncertainty or 0.0 for c in of_role if role != "code" or c.order is not None]
             if sizes:
                 out.append(BudgetEntry(case, omega, name, cause, part, max(sizes), bound=True))
     return out
