@@ -18,7 +18,7 @@ from ...references.protocol.process import Limits
 from ...references.readers.turbine_mass import Weighed
 from ..input import readers
 from ..input.errors import CaseError
-from ..input.readers.source import Mount, Source
+from ..input.readers.source import Mount, Source, TurbineReading
 from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
 from ..judge.results import PropertyCheck, Setting
@@ -183,12 +183,10 @@ def of_case(case: TurbineCase) -> TurbineSubject:
     )
 
 
-def subject(
-    path: Path, turbine: Turbine, source: Source, points: Sequence[float], rpm: bool, mount: Mount | None = None
-) -> TurbineSubject:
+def subject(path: Path, reading: TurbineReading, points: Sequence[float], rpm: bool, mount: Mount) -> TurbineSubject:
     """A turbine that is given only by its file, at these speeds, rad/s."""
     name = re.sub(r"[^a-z0-9.-]+", "-", path.stem.lower()).strip("-.") or "turbine"
-    return TurbineSubject(name, str(path), turbine, tuple(points), rpm, source, mount=mount or Mount())
+    return TurbineSubject(name, str(path), reading.turbine, tuple(points), rpm, reading.source, mount=mount)
 
 
 def _mass(beam: Blade) -> float:
