@@ -33,6 +33,12 @@ LOOSEST = 0.5
 
 Confirmations = Annotated[int, Meta(ge=0, le=20)]
 
+Groups = Annotated[
+    Confirmations, Meta(description="number of independent groups that must agree with Southwell's own solver")
+]
+
+TimeLimit = Annotated[float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")]
+
 
 class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
     """Rotor speeds in one unit: a list, or a range ``"first:last:step"`` with both ends, or ``"0, 5, 10"``."""
@@ -56,9 +62,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     tables: Annotated[
         tuple[str, ...], Meta(description="published tables to compare with, by name, or by path (.toml)")
     ] = ()
-    time_limit: Annotated[
-        float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
-    ] = 300.0
+    time_limit: TimeLimit = 300.0
     groups: Annotated[
         Confirmations | dict[str, Confirmations],
         Meta(
