@@ -26,7 +26,7 @@ from ...core.blade_checks import MAX_LENGTH
 from ...core.sampling import mass_at, stiffness_at, twist_at
 from ...core.space import spatial as sp
 from . import files
-from .errors import CaseError, nearest
+from .errors import CaseError, located, nearest
 from .readers.sections import FromFile, Mounted, Sections
 from .readers.source import BladeFile, Mount, Source, Unused, unused
 
@@ -157,7 +157,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
             )
         I_flap, I_edge, mass_offset = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL[len(self.RIGID) :])
         sections = offset(section_mass(mass, I_flap, I_edge), mass_offset * (not self.centred))
-        try:
+        with located(f"{path}: "):
             blade = Blade(
                 name=name,
                 stations=np.append(fraction[:-1], 1.0) * self.length,
@@ -167,8 +167,6 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
                 hub_radius=self.hub_radius,
             )
             return self.mounted(stepped(blade, np.array(self.pieces)) if self.pieces else blade)
-        except BladeError as error:
-            raise CaseError(f"{path}: {error}") from error
 
 
 STEP = 1e-7

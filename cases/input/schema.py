@@ -13,12 +13,12 @@ import numpy as np
 from msgspec import UNSET, Meta, Struct, UnsetType, structs
 from numpy.typing import NDArray
 
-from ...core.blade import Blade, BladeError
+from ...core.blade import Blade
 from ...core.effects import Effects
 from ...references import published
 from . import files
 from .blades import BladeData, Dimensionless
-from .errors import CaseError, nearest
+from .errors import CaseError, located, nearest
 from .names import Name, Typed
 from .readers.source import BladeFile, Unused
 from .toml import OR_A_NAME, convert, document, finite
@@ -200,10 +200,8 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         tables, where = {**data, "blade": {**data["blade"], **changes}}, f"{path}: variants.{label}" if label else path
         blade = convert(tables, CaseFile, where).blade
         name = f"{text.name}/{label}" if label else text.name
-        try:
+        with located(f"{where}: blade: "):
             as_given, unused_values, file = blade.read(name, folder)
-        except BladeError as error:
-            raise CaseError(f"{where}: blade: {error}") from error
         variants.append(Variant(name, as_given, speeds, unused_values, file))
     return Case(path, text, tuple(variants))
 
@@ -271,10 +269,8 @@ def rad_s(table: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.f
     ((unit, value),) = units.items()
     if unit == "gamma" and not dimensionless:
         raise CaseError(f'{path}: speeds.gamma: requires blade.kind = "dimensionless": give rad_s or rpm')
-    try:
+    with located(f"{path}: speeds.{unit}: ", ValueError):
         speeds = speed_range(value) if isinstance(value, str) else np.array(value, dtype=float)
-    except ValueError as error:
-        raise CaseError(f"{path}: speeds.{unit}: {error}") from error
     if not len(speeds):
         raise CaseError(f"{path}: speeds.{unit}: empty: give at least one speed, 0 for rest")
     if speeds.max() > FASTEST:

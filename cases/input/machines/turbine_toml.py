@@ -6,12 +6,12 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ....core.blade import Blade, section_mass, section_stiffness
 from ....core.mechanism.description import inertia
 from ....core.turbine.tower import Support, Tower, check_tower
 from ....core.turbine.turbine import Drivetrain, Teeter, Turbine, shaft_pose
 from .. import readers, toml
-from ..errors import CaseError
+from ..errors import CaseError, located
 from ..readers.matrices import BEAMDYN, in_axes
 from ..readers.openfast import elastodyn, elastodyn_tower
 from ..readers.source import Mount, Source
@@ -167,7 +167,7 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
         return np.array(columns.get(key, otherwise), float)
 
     rigid = np.full(count, np.inf)
-    try:
+    with located(f"{path}: tower: "):
         beam = Blade(
             name=name,
             stations=np.array(data.stations),
@@ -181,8 +181,6 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
             twist=np.zeros(count),
             tip_mass=top,
         )
-    except BladeError as error:
-        raise CaseError(f"{path}: tower: {error}") from error
     return beam, ()
 
 
@@ -210,10 +208,8 @@ def support(path: Path, key: str, data: SupportData, height: float) -> Support:
     springs = tuple((s.height, np.diag([0.0, s.port, s.downwind, 0.0, 0.0, 0.0])) for s in data.springs)
     mass = None if data.mass is None else in_axes(_six(f"{path}: {key}.mass", data.mass), BEAMDYN)
     out = Support(base, springs, np.array(data.soil) if data.soil else None, mass)
-    try:
+    with located(f"{path}: {key}: ", ValueError):
         check_tower(height, out)
-    except ValueError as error:
-        raise CaseError(f"{path}: {key}: {error}") from error
     return out
 
 

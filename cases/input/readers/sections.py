@@ -14,11 +14,11 @@ from msgspec import Meta, Struct
 from msgspec.structs import replace as replace_struct
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError
+from ....core.blade import Blade
 from ....core.blade_checks import MAX_LENGTH
 from ....core.space.spatial import skew
 from .. import files
-from ..errors import CaseError, FilesMissingError
+from ..errors import CaseError, FilesMissingError, located
 from .matrices import UPPER, symmetric
 from .source import BladeFile, Unused
 
@@ -106,10 +106,8 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
             changes["root"] = springs(self.root)
         if self.tip_mass is not None:
             changes["tip_mass"] = self.tip_mass.matrix()
-        try:
+        with located("blade."):
             return replace(blade, **changes)
-        except BladeError as error:
-            raise CaseError(f"blade.{error}") from error
 
 
 class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
@@ -157,7 +155,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
             if stiffness[:, i, :].any():
                 raise CaseError(f"blade.rigid: {STRAINS[i]}: its stiffnesses are not zero: remove it or make them zero")
             stiffness[:, i, i] = np.inf
-        try:
+        with located("blade."):
             blade = Blade(
                 name=name,
                 stations=np.array(self.s),
@@ -168,8 +166,6 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
                 curve=np.array(self.curve) if self.curve is not None else np.zeros((0, 3)),
                 kinks=tuple(self.kinks),
             )
-        except BladeError as error:
-            raise CaseError(f"blade.{error}") from error
         return self.mounted(blade)
 
 
