@@ -5,7 +5,9 @@ closest point the squares of the frequencies behave like those of two coupled os
 difference is a parabola over Ω² (Leissa 1974; Perkins and Mote 1986, J. Sound Vib. 106).
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from itertools import pairwise
 from typing import Literal
 
@@ -62,16 +64,17 @@ class Encounter:
 
 def encounters(tracks: Tracks, fractions: Array, weight: Array) -> tuple[Encounter, ...]:
     """All encounters, by speed; ``fractions`` (n, t, 4) are the energy fractions of the tracks at each speed."""
+    build = partial(_encounter, tracks, fractions, weight)
     pairs = []
     for i in range(tracks.count):
         for j in range(i + 1, tracks.count):
             both = np.flatnonzero((tracks.mode_index[:, i] >= 0) & (tracks.mode_index[:, j] >= 0))
             for run in np.split(both, np.flatnonzero(np.diff(both) > 1) + 1):
-                pairs += _of_pair(tracks, fractions, weight, i, j, run)
+                pairs += _of_pair(build, tracks, i, j, run)
     return tuple(sorted(pairs, key=lambda e: (e.omega, e.frequency)))
 
 
-def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k: Index) -> list[Encounter]:
+def _of_pair(build: Callable[..., Encounter], tracks: Tracks, i: int, j: int, k: Index) -> list[Encounter]:
     if len(k) < 2:
         return []
     x = tracks.omega[k] ** 2
@@ -86,34 +89,16 @@ def _of_pair(tracks: Tracks, fractions: Array, weight: Array, i: int, j: int, k:
         square = float(np.interp(at, x, squares.mean(1)))
         gap = float(tracks.bound[k[a + 1], i, j])
         pair = (i, j) if is_above[a] else (j, i)
-        within_pair.append(
-            _encounter("crossing", tracks, fractions, weight, pair, where, square, gap, (k[a], k[a + 1]), True)
-        )
+        within_pair.append(build("crossing", pair, where, square, gap, (k[a], k[a + 1]), True))
     size = np.abs(d)
     ends = [0, *(swaps + 1).tolist(), len(k)]  # between crossings
-    for first, last in pairwise(ends):
-        within_pair += _veerings(
-            tracks,
-            fractions,
-            weight,
-            (i, j),
-            k[first:last],
-            x[first:last],
-            size[first:last],
-            squares[first:last],
-        )
+    for between in (slice(*limits) for limits in pairwise(ends)):
+        within_pair += _veerings(build, (i, j), k[between], x[between], size[between], squares[between])
     return within_pair
 
 
 def _veerings(
-    tracks: Tracks,
-    fractions: Array,
-    weight: Array,
-    pair: tuple[int, int],
-    k: Index,
-    x: Array,
-    size: Array,
-    squares: Array,
+    build: Callable[..., Encounter], pair: tuple[int, int], k: Index, x: Array, size: Array, squares: Array
 ) -> list[Encounter]:
     """Interior minima of the distance with exchange of shapes; ``size`` is the distance of the squared frequencies."""
     veerings = []
@@ -126,9 +111,7 @@ def _veerings(
         gap = float(smallest / (2.0 * np.sqrt(square)))
         order = pair if squares[m, 0] < squares[m, 1] else (pair[1], pair[0])
         window = (int(k[a]), int(k[b]))
-        e = _encounter(
-            "veering", tracks, fractions, weight, order, float(np.sqrt(at)), square, gap, window, before and after
-        )
+        e = build("veering", order, float(np.sqrt(at)), square, gap, window, before and after)
         if e.exchanged >= EXCHANGED:
             veerings.append(e)
     return veerings
@@ -152,10 +135,10 @@ def _passed(size: Array, m: int, step: int, smallest: float) -> tuple[int, bool]
 
 
 def _encounter(
-    kind: Literal["crossing", "veering"],
     tracks: Tracks,
     fractions: Array,
     weight: Array,
+    kind: Literal["crossing", "veering"],
     pair: tuple[int, int],
     omega: float,
     square: float,

@@ -1,15 +1,12 @@
 """Natural frequencies of a blade at each rotor speed, by core; ``tracked.tracked`` follows modes from speed to speed."""
 
-import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ...core import solve
 from ...core.blade import Blade
 from ...core.participation import families, numbered, participation
-from ...core.spectrum.refinement import AccuracyWarning
-from ..input.errors import NO_STATE, unsteady
 from ..judge.pairing import aligned, weights
+from .diagram import CampbellRequest, solver
 
 
 @dataclass(frozen=True)
@@ -46,15 +43,10 @@ def sweep(
     Raises:
         CaseError: if a speed has no stable steady state, or one of large strain.
     """
-    weight = weights(blade)
-    answers = solve.sweep(blade, speeds, elements, count, accuracy=accuracy, allow_large_strain=allow_large_strain)
+    how = CampbellRequest(speeds, count, elements=elements, accuracy=accuracy, allow_large_strain=allow_large_strain)
+    weight, solve = weights(blade), solver(blade, how, spare=0)
     for omega in speeds:
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore", AccuracyWarning)  # uncertainties are in the rows
-                modes = aligned(next(answers), weight)
-        except NO_STATE as error:
-            raise unsteady(blade.name, omega, error) from error
+        modes = aligned(solve(omega), weight)
         rows = zip(numbered(families(participation(modes, blade))), modes.frequencies, modes.uncertainty, strict=True)
         yield [
             NamedMode(float(omega), mode, name, float(frequency), float(uncertainty), modes.strain)

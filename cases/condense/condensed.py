@@ -15,7 +15,7 @@ from ...core.modes import STATIONS, Modes
 from ...core.participation import families, numbered
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ...core.space.inertia import about_centre
-from ..input import atomic
+from ..input import atomic, files
 from ..input.errors import NO_STATE, CaseError, unsteady
 from ..input.names import Name
 
@@ -101,12 +101,10 @@ def read(path: Path) -> Condensed:
     Raises:
         CaseError: if the file does not exist, its format is invalid, or a matrix has the wrong size.
     """
+    with files.readable(path):
+        content = read_bytes(path, LARGEST_DATA)
     try:
-        record = msgspec.json.decode(read_bytes(path, LARGEST_DATA), type=_Kept)
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: correct the path") from None
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
+        record = msgspec.json.decode(content, type=_Kept)
     except (msgspec.DecodeError, UnicodeDecodeError, RecursionError) as error:
         raise CaseError(f"{path}: {error}: not written by `southwell condense`; condense again") from error
     sizes = {"undeformed": 4, "stiffness": 6, "inertia": 6, "body_twist": 6}

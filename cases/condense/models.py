@@ -89,19 +89,10 @@ def read(path: Path, field: str, spec: Model, common: Model, units: str) -> Whol
 def _load(folder: Path, spec: str | Matrix, quantity: str) -> Exported:
     name, matrix = (spec.file, spec.matrix) if isinstance(spec, Matrix) else (spec, quantity)
     path = folder / name
-    files.inside(path)
-    try:
-        return (
-            matrix_files.stored(path)
-            if os.path.isfile(path.with_suffix(".dof"))
-            else matrix_files.read_matrix(path, matrix)
-        )
-    except FileNotFoundError:
-        raise CaseError(
-            f"{path}: no such file: paths are relative to the file that names them; correct the name"
-        ) from None
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
+    with files.readable(path, "paths are relative to the file that names them; correct the name"):
+        if os.path.isfile(path.with_suffix(".dof")):
+            return matrix_files.stored(path)
+        return matrix_files.read_matrix(path, matrix)
 
 
 def _no_negative(where: str, matrix: Exported) -> None:

@@ -196,7 +196,7 @@ class _Search:
         """Causes with a factor: those that explain most to first order, with the factor refined."""
         finite = np.isfinite(self.difference)
         D = self.difference[finite]
-        squares = {name: _remainder(D, slope[finite]) for name, slope in slopes.items()}
+        squares = {name: remaining_square(D, slope[finite]) for name, slope in slopes.items()}
         best = sorted(squares, key=lambda name: squares[name])[:FITTED]
         promising = best[:1] + [name for name in best[1:] if self._is_promising(squares[name], len(slopes), 1)]
         return [self._refined((), name, slopes[name], len(slopes)) for name in promising]
@@ -237,7 +237,7 @@ class _Search:
             if self._is_promising(squares[a, b], len(squares))
         ]
         mixed = {
-            (name, factor): _remainder(D - prediction[finite], slope[finite])
+            (name, factor): remaining_square(D - prediction[finite], slope[finite])
             for name, prediction in single.items()
             for factor, slope in slopes.items()
         }
@@ -260,6 +260,6 @@ def _is_fixed(cause: Cause) -> bool:
     return all(factor == 1.0 for _, factor in cause.changes)
 
 
-def _remainder(difference: Array, slope: Array) -> float:
+def remaining_square(difference: Array, slope: Array) -> float:
     """Sum of squares that remains of ``difference`` after the best multiple of ``slope``."""
     return float(difference @ difference - (difference @ slope) ** 2 / (slope @ slope))

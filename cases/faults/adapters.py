@@ -12,23 +12,11 @@ from ...references.protocol import registry
 from ...references.protocol.process import Failure
 from ...references.protocol.worker import Answer
 from ..solve import works
-from .alterations import answered
+from .alterations import answered, sent
 from .seeding import Fault, Trial
 from .trials import CONED, FAST, PARK, PITCHED, TAPERED, TIP, TWISTED
 
 CodeRun = tuple[float, int, int]
-
-
-def altered_blade(alter: Callable[[Blade], Blade]) -> Callable[[Any], Any]:
-    """The code solves a different blade."""
-
-    def make(original: Any) -> Any:
-        def faulty(name: str, blade: Blade, runs: Sequence[CodeRun], *how: Any) -> list[Answer]:
-            return original(name, alter(blade), runs, *how)
-
-        return faulty
-
-    return make
 
 
 def altered_question(alter: Callable[[CodeRun], CodeRun]) -> Callable[[Any], Any]:
@@ -118,24 +106,24 @@ FAULTS = (
     _adapter("speed in rpm", "the speed in rpm is read as rad/s", "first flapwise by tens of percent",
              altered_question(lambda run: (run[0] * 30 / np.pi, *run[1:]))),
     _adapter("hub radius dropped", "the blade of the code begins on the rotor axis", "first modes −3 %",
-             altered_blade(lambda b: replace(b, hub_radius=0.0))),
+             sent(lambda b: replace(b, hub_radius=0.0))),
     _adapter("tip mass dropped", "the blade of the code has no tip mass", "first modes by tens of percent",
-             altered_blade(lambda b: replace(b, tip_mass=np.zeros((6, 6)))), TIP),
+             sent(lambda b: replace(b, tip_mass=np.zeros((6, 6)))), TIP),
     _adapter("twist in degrees", "degrees are read as radians, in the opposite sense", "second modes by several percent",
-             altered_blade(lambda b: replace(b, twist=np.degrees(b.twist))), TWISTED),
+             sent(lambda b: replace(b, twist=np.degrees(b.twist))), TWISTED),
     _adapter("twist reversed in the adapter", "the twist of the code has the opposite sense", "no frequency; no partner",
-             altered_blade(lambda b: replace(b, twist=-b.twist)), TWISTED),
+             sent(lambda b: replace(b, twist=-b.twist)), TWISTED),
     _adapter("precone dropped", "the blade of the code has no precone", "first flapwise by several percent",
-             altered_blade(lambda b: replace(b, precone=0.0)), CONED),
+             sent(lambda b: replace(b, precone=0.0)), CONED),
     _adapter("pitch dropped", "the blade of the code has no pitch", "lowest modes by several percent",
-             altered_blade(lambda b: replace(b, pitch=0.0)), PITCHED),
+             sent(lambda b: replace(b, pitch=0.0)), PITCHED),
     _adapter("taper dropped", "every element has the root's section", "first modes by tens of percent",
-             altered_blade(lambda b: replace(b, stiffness=b.stiffness[[0] * len(b.stations)],
+             sent(lambda b: replace(b, stiffness=b.stiffness[[0] * len(b.stations)],
                                              mass=b.mass[[0] * len(b.stations)])), TAPERED),
     _adapter("density", "mass half a percent too large", "all modes at rest −0.25 %",
-             altered_blade(lambda b: replace(b, mass=1.005 * b.mass)), REST),
+             sent(lambda b: replace(b, mass=1.005 * b.mass)), REST),
     _adapter("modulus", "stiffness too small by a factor of 1000: kN for N", "all modes −97 % at rest",
-             altered_blade(lambda b: replace(b, stiffness=b.stiffness / 1000)), REST),
+             sent(lambda b: replace(b, stiffness=b.stiffness / 1000)), REST),
     _adapter("zero frequency", "the lowest frequency is 0", "first −100 %", answered(_zero)),
     _adapter("wide bracket", "wrong by 60 %, with a stated uncertainty of 90 %", "+60 %", answered(_wide)),
     _adapter("crash", "the code's process dies", "no answer", _crashes),

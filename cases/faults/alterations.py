@@ -27,6 +27,11 @@ def answered(alter: Callable[[Any], Any]) -> Callable[[Any], Any]:
     return returned(lambda answers: [answer if isinstance(answer, Failure) else alter(answer) for answer in answers])
 
 
+def sent(alter: Callable[[Any], Any]) -> Callable[[Any], Any]:
+    """A code is sent another blade, turbine or list of mechanisms, its second argument."""
+    return lambda original: lambda name, subject, *how: original(name, alter(subject), *how)
+
+
 def received(alter: Callable[[Any], Any]) -> Callable[[Any], Any]:
     """A function receives another blade or turbine, its first argument."""
     return lambda original: lambda subject, *args, **kwargs: original(alter(subject), *args, **kwargs)
@@ -62,30 +67,6 @@ def pencil(alter: Callable[[Any], Any]) -> Callable[[Balance], Balance]:
     return returned(lambda state: replace(state, pencil=alter(state.pencil)))
 
 
-def chained(alter: Callable[[Mesh, Blade], Mesh]) -> Callable[[Any], Any]:
-    """The chain is altered after discretisation."""
-
-    def make(original: Any) -> Any:
-        def faulty(blade: Blade, *args: Any, **kwargs: Any) -> Mesh:
-            return alter(original(blade, *args, **kwargs), blade)
-
-        return faulty
-
-    return make
-
-
-def alter_property(alter: Callable[[Any, Blade, Any], Any]) -> Callable[[Any], Any]:
-    """A property along the blade is altered: ``alter(values, blade, s)``."""
-
-    def make(original: Any) -> Any:
-        def faulty(blade: Blade, s: Any) -> Any:
-            return alter(original(blade, s), blade, s)
-
-        return faulty
-
-    return make
-
-
 def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
     """Core uses different rotor speeds."""
 
@@ -98,71 +79,33 @@ def at_speed(alter: Callable[[float], float]) -> Callable[[Any], Any]:
     return make
 
 
-def whole_end(chain: Mesh, blade: Blade) -> Mesh:
+def whole_end(original: Any) -> Any:
     """The last element's whole mass at the tip, instead of its half."""
-    lumps = chain.lumps.copy()
-    lumps[-1] += lumps[-1] - blade.tip_mass
-    return replace(chain, lumps=lumps)
 
-
-def scaled_tip(factor: float) -> Callable[[Mesh, Blade], Mesh]:
-    """The tip body's inertia times ``factor``."""
-
-    def alter(chain: Mesh, blade: Blade) -> Mesh:
+    def faulty(blade: Blade, *args: Any, **kwargs: Any) -> Mesh:
+        chain = original(blade, *args, **kwargs)
         lumps = chain.lumps.copy()
-        lumps[-1] += (factor - 1.0) * blade.tip_mass
+        lumps[-1] += lumps[-1] - blade.tip_mass
         return replace(chain, lumps=lumps)
 
-    return alter
+    return faulty
 
 
-def mirrored_tip(chain: Mesh, blade: Blade) -> Mesh:
-    """The tip body's inertia reflected in the x–z plane."""
-    lumps, flip = chain.lumps.copy(), np.diag([1.0, -1.0, 1.0, -1.0, 1.0, -1.0])
-    lumps[-1] += flip @ blade.tip_mass @ flip - blade.tip_mass
-    return replace(chain, lumps=lumps)
+def light_tip(original: Any) -> Any:
+    """The last tenth of a blade has no mass per length (k, 6, 6)."""
+
+    def faulty(blade: Blade, s: Any) -> Any:
+        return original(blade, s) * np.where(np.asarray(s) > 0.9 * blade.length, 0.0, 1.0)[:, None, None]
+
+    return faulty
 
 
-def scaled_beyond(mass: Any, blade: Blade, s: Any, factor: float, fraction: float) -> Any:
-    """Mass per length (k, 6, 6) times ``factor`` where ``s`` exceeds the ``fraction`` of the length."""
-    return mass * np.where(np.asarray(s) > fraction * blade.length, factor, 1.0)[:, None, None]
-
-
-def swapped_axes(stiffness: Any, *_: Any) -> Any:
-    """Section stiffness (k, 6, 6) with y and z exchanged."""
-    order = [0, 2, 1, 3, 5, 4]
-    return stiffness[:, order][:, :, order]
-
-
-def swapped_coupling(stiffness: Any, *_: Any) -> Any:
-    """Section stiffness (k, 6, 6) with torsion coupled to the other bending."""
-    out = stiffness.copy()
-    out[:, TORSION, [BEND_Y, BEND_Z]] = stiffness[:, TORSION, [BEND_Z, BEND_Y]]
-    out[:, [BEND_Y, BEND_Z], TORSION] = stiffness[:, [BEND_Z, BEND_Y], TORSION]
-    return out
-
-
-def scaled_coupling(factor: float) -> Callable[[Any, Blade, Any], Any]:
-    """The coupling of torsion and flapwise bending times ``factor``."""
-
-    def alter(stiffness: Any, *_: Any) -> Any:
-        out = stiffness.copy()
-        out[:, TORSION, BEND_Y] *= factor
-        out[:, BEND_Y, TORSION] *= factor
-        return out
-
-    return alter
-
-
-def scaled_strain(strain: int, factor: float) -> Callable[[Any, Blade, Any], Any]:
-    """The stiffness of one strain times ``factor``."""
-
-    def alter(stiffness: Any, *_: Any) -> Any:
-        out = stiffness.copy()
-        out[:, strain, strain] *= factor
-        return out
-
-    return alter
+def swapped_coupling(blade: Blade) -> Blade:
+    """Torsion is coupled to the other bending."""
+    out = blade.stiffness.copy()
+    out[:, TORSION, [BEND_Y, BEND_Z]] = blade.stiffness[:, TORSION, [BEND_Z, BEND_Y]]
+    out[:, [BEND_Y, BEND_Z], TORSION] = blade.stiffness[:, [BEND_Z, BEND_Y], TORSION]
+    return replace(blade, stiffness=out)
 
 
 def core_modes(alter: Callable[[Blade], Blade]) -> tuple[Any, str, Callable[[Any], Any]]:

@@ -113,10 +113,6 @@ def judge(make: Any) -> tuple[Seam, ...]:
     return (refined, "judge", make), (same, "judge", make), (verdict, "judge", make)
 
 
-def _judging(name: str, area: Any, description: str, size: str, seams: tuple[Seam, ...], blinds: str) -> Fault:
-    return Fault(name, area, description, size, seams, blinds=blinds)
-
-
 FAULTS = (
     Fault("paired by number", "pairing", "modes are paired by their number", "other families' frequencies",
           ((convergence, "pair", by_number),), FAST),
@@ -124,24 +120,24 @@ FAULTS = (
           ((refined, "follow", next_one),), PARK),
     Fault("norms not squared", "pairing", "a norm is twice too large", "MAC a sixteenth; no partner",
           ((pairing, "_norm", lambda original: lambda a, momenta: 4.0 * original(a, momenta)),), PARK),
-    _judging("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",
-             ((convergence, "pair", anything_goes), (refined, "pair", anything_goes)), "twist reversed in the adapter"),
-    _judging("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",
-             ((refined, "_missing_motion", inferred),), "lost column"),
+    Fault("any likeness", "pairing", "any MAC is accepted", "a wrong mode is compared",
+             ((convergence, "pair", anything_goes), (refined, "pair", anything_goes)), blinds="twist reversed in the adapter"),
+    Fault("motions inferred", "pairing", "a mode without a partner is not applicable", "no answer counts",
+             ((refined, "_missing_motion", inferred),), blinds="lost column"),
     Fault("never sure", "uncertainty", "the uncertainty is always unknown", "all cells",
           ((convergence, "from_refinement", _sure(None)),), PARK),
     Fault("unsure by one percent", "uncertainty", "the uncertainty is always 1 %", "all cells",
           ((convergence, "from_refinement", _sure(0.01)),), PARK),
     Fault("limit off", "uncertainty", "limits are 0.2 % too large for codes with an order", "limits of the solver +0.2 %",
           ((convergence, "widened", _extrapolated),), PARK),
-    _judging("every number passes", "verdict", "every verdict is pass", "all cells", judge(_passes),
-             "no hub radius"),
-    _judging("target in percent", "verdict", "the target is a hundred times as large", "0.1 % becomes 10 %",
-             judge(_loose), "density"),
-    _judging("sign of the difference", "verdict", "only frequencies above the solver's are judged", "negative differences pass",
-             judge(_signed), "softening's sign"),
-    _judging("all is known", "verdict", "every failure is a known difference", "all failures",
-             judge(_excuses), "no Coriolis"),
+    Fault("every number passes", "verdict", "every verdict is pass", "all cells", judge(_passes),
+             blinds="no hub radius"),
+    Fault("target in percent", "verdict", "the target is a hundred times as large", "0.1 % becomes 10 %",
+             judge(_loose), blinds="density"),
+    Fault("sign of the difference", "verdict", "only frequencies above the solver's are judged", "negative differences pass",
+             judge(_signed), blinds="softening's sign"),
+    Fault("all is known", "verdict", "every failure is a known difference", "all failures",
+             judge(_excuses), blinds="no Coriolis"),
     Fault("judged with a bias", "verdict", "differences are 0.2 % too small", "−0.2 %", judge(_half), PARK),
     Fault("model ignored", "verdict", "a code without effects is compared with all of them", "Coriolis at γ = 10",
           ((reference, "relevant_effects", lambda original: lambda *_: reference.ALL_EFFECTS),),

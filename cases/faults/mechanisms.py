@@ -1,6 +1,6 @@
 """Faults in the solver of mechanisms, in adapters for them and in their pairing."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -13,12 +13,11 @@ from ...core.spectrum import modal
 from ...core.steady import periodic
 from ...core.tree.linearization import Linearization
 from ...references.protocol.interface import MechanismModes
-from ...references.protocol.worker import MechanismAnswer as Answer
 from ..judge import same
 from ..judge.pairing import Pair
 from ..judge.spectrum import Spectrum
 from ..solve import mechanism
-from .alterations import answered, returned
+from .alterations import answered, returned, sent
 from .seeding import Fault, Seam, Trial
 
 HINGED = Trial("hinged-blade", (30.0,), ())
@@ -49,14 +48,7 @@ def _about(alter: Callable[[Linearization], Linearization]) -> tuple[Seam, ...]:
 
 def _given(alter: Callable[[Mechanism], Mechanism]) -> Callable[[Any], Any]:
     """The code solves a different mechanism."""
-
-    def make(original: Any) -> Any:
-        def faulty(name: str, mechanisms: Sequence[Mechanism], guess: Mapping[str, float], *how: Any) -> list[Answer]:
-            return original(name, [alter(m) for m in mechanisms], guess, *how)
-
-        return faulty
-
-    return make
+    return sent(lambda mechanisms: [alter(mechanism) for mechanism in mechanisms])
 
 
 def _by_number(original: Any) -> Any:

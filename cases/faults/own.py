@@ -60,11 +60,6 @@ class _Witnessed(BladeSubject):
         return [column for column in columns if column.head.role == "code" and column.head.shares == "nothing"]
 
 
-def is_users(subject: Subject) -> bool:
-    """Whether a subject is a blade that does not come with the package."""
-    return isinstance(subject, BladeSubject) and subject.users
-
-
 def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Description]) -> tuple[str, ...]:
     """What to ask of ``codes`` that share nothing with core and pass at the highest speed in every mode.
 
@@ -79,10 +74,9 @@ def witnesses(cells: Iterable[Cell], subject: Subject, codes: Iterable[Descripti
     return tuple(identifiers[code] for code, passes in has_passed.items() if passes and code in identifiers)[:WITNESSES]
 
 
-def chosen(names: Iterable[str]) -> tuple[str, ...]:
-    """All of ``NAMES`` if ``names`` has all that every run seeds; else those that are in both."""
-    names = tuple(names)
-    return NAMES if set(FAST) <= set(names) else tuple(name for name in names if name in NAMES)
+def chosen(names: Sequence[str], own: Sequence[str] = NAMES) -> tuple[str, ...]:
+    """All of the ``own`` faults of a blade or a turbine if ``names`` has all that every run seeds; else those in both."""
+    return tuple(own) if set(FAST) <= set(names) else tuple(name for name in names if name in own)
 
 
 def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse: bool = False) -> list[Control]:
@@ -111,15 +105,13 @@ def run(subject: BladeSubject, codes: Sequence[str], names: Sequence[str], reuse
 
 def judged(control: Control, correct_cells: Sequence[Cell], faulty_cells: Sequence[Cell]) -> Control:
     """The result of a fault from the cells of independent codes without and with it."""
-    by_key = {_key(cell): cell for cell in correct_cells}
-    failures = [
-        c for c in faulty_cells if c.verdict == "fail" and getattr(by_key.get(_key(c)), "verdict", "") != "fail"
-    ]
+    by_key = {cell.key: cell for cell in correct_cells}
+    failures = [c for c in faulty_cells if c.verdict == "fail" and getattr(by_key.get(c.key), "verdict", "") != "fail"]
     if failures:
         changes = [c.difference for c in failures if c.difference is not None]
         detections = tuple(f"{c.case}, {c.code}, {c.name or 'no answer'}, {c.omega:g} rad/s: fail" for c in failures)
         return replace(control, detected_by=detections, change=max(changes, key=abs, default=None))
-    pairs = [(by_key[_key(c)], c) for c in faulty_cells if _key(c) in by_key]
+    pairs = [(by_key[c.key], c) for c in faulty_cells if c.key in by_key]
     compared = [pair for a, b in pairs for pair in ((a.reference, b.reference), (a.value, b.value))]
     relative_changes = [abs(y / x - 1.0) for x, y in compared if x and y]
     has_lost = any(a.value is not None and b.value is None for a, b in pairs)
@@ -128,7 +120,3 @@ def judged(control: Control, correct_cells: Sequence[Cell], faulty_cells: Sequen
         size = f" by more than {unsigned(max(relative_changes))}" if max(relative_changes) else ""
         return replace(control, without_effect=f"changes no compared frequency{size}")
     return control
-
-
-def _key(cell: Cell) -> tuple[str, float, int, str, str]:
-    return cell.code, cell.omega, cell.mode, cell.quantity, cell.where

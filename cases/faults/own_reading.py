@@ -1,34 +1,40 @@
-"""Mistakes of readers and of sampling on the blade that is verified: the second reading of its file must differ."""
+"""Mistakes of reading, on the blade or the turbine that is verified: the second reading of its file must differ."""
 
-from collections.abc import Callable
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, fields, is_dataclass, replace
+from typing import Any
 
 import numpy as np
 
 from ...core.blade import BEND_Y, BEND_Z, Blade
 from ...core.space.inertia import transformed
 from ...core.space.spatial import pose
+from ...core.turbine.turbine import Turbine
 from ..diagnosis import blade_errors as errors
+from ..input import readers
 from ..input.readers import BladeFile
-from ..judge.results import Control
+from ..judge.results import Control, PropertyCheck
 from ..plan.blade import BladeSubject
+from ..plan.turbine import TurbineSubject
 from ..solve import properties
+from ..solve.turbine_reading import read_again
+from .turbines import other_tilt, plain_ratio, shaft_of, with_shaft
 
 
 @dataclass(frozen=True)
 class ReaderFault:
-    """A mistake of a reader: the blade that it returns instead of the right one.
+    """A mistake of a reader: the blade or the turbine that it returns instead of the right one.
 
     Attributes:
         name: short name.
         description: one sentence.
-        alter: from the right blade to the wrong one.
+        alter: from what is right to what is wrong.
         part: the property that a second reading must state to detect it; empty if every second reading does.
     """
 
     name: str
     description: str
-    alter: Callable[[Blade], Blade]
+    alter: Callable[[Any], Any]
     part: str = ""
 
 
@@ -50,7 +56,7 @@ def _shear_and_torsion(blade: Blade) -> Blade:
     return replace(blade, mass=blade.mass[:, order][:, :, order], stiffness=blade.stiffness[:, order][:, :, order])
 
 
-READER = (
+BLADE = (
     ReaderFault("reader: columns exchanged", "flapwise and edgewise stiffness are exchanged", errors.exchanged_bending),
     ReaderFault("reader: unit", "flapwise stiffness is taken in kN m²", errors.scaled_strain(1e-3, BEND_Y)),
     ReaderFault("reader: mass multiplier", "a multiplier of the mass, of 1.05, is ignored", errors.scaled_mass(1 / 1.05)),
@@ -68,43 +74,84 @@ READER = (
     ReaderFault("reader: station", "the twist is that of the station before",
                 lambda b: replace(b, twist=np.concatenate([b.twist[:1], b.twist[:-1]]))),
 )  # fmt: skip
-"""Mistakes of readers and of sampling."""
+"""Mistakes of reading a blade."""
 
 
-def run(subject: BladeSubject) -> list[Control]:
-    """Run the mistakes of readers on the blade's file; empty for a blade without a file."""
-    file = subject.variant.file
-    return [] if file is None else of_file(subject.name, max(subject.points), file)
+def _other_side(turbine: Turbine) -> Turbine:
+    """The nacelle's mass centre on the other side of the yaw axis."""
+    mirror = np.diag([1.0, 1.0, -1.0, -1.0, -1.0, 1.0])
+    return replace(turbine, nacelle=mirror @ turbine.nacelle @ mirror)
 
 
-def of_file(case: str, omega: float, file: BladeFile) -> list[Control]:
-    """Run the mistakes of readers on a blade's file: the second reading must differ."""
-    correct_rows, _ = properties.of_reading(case, file, file.blade)
+def _downwind(turbine: Turbine) -> Turbine:
+    height, overhang, tilt = shaft_of(turbine)
+    return with_shaft(turbine, height, -overhang, tilt)
+
+
+TURBINE = (
+    ReaderFault("reader: tilt's sign", "the tilt of the shaft has the other sign", other_tilt),
+    ReaderFault("reader: overhang's sign", "the rotor is on the other side of the tower", _downwind),
+    ReaderFault("reader: nacelle", "the nacelle's mass centre is on the other side of the yaw axis", _other_side),
+    ReaderFault("reader: gear ratio", "the generator's inertia is multiplied by the ratio instead of its square", plain_ratio),
+    ReaderFault("reader: tower", "fore-aft and side-to-side stiffness of the tower are exchanged",
+                lambda t: replace(t, tower=errors.exchanged_bending(t.tower))),
+)  # fmt: skip
+"""Mistakes of reading a turbine."""
+
+
+def run(subject: BladeSubject | TurbineSubject) -> list[Control]:
+    """Run the mistakes of reading on the files of a blade or a turbine; empty for one without files that are read twice."""
+    case, omega = subject.name, max(subject.points)
+    if isinstance(subject, BladeSubject):
+        return [] if subject.file is None else _of_blade(case, omega, subject.file)
+    path, mount = subject.deck, subject.mount
+    if path is None:
+        return []
+    blade = readers.reading(path, mount)
+    of_turbine = _misread(case, omega, TURBINE, subject.turbine, lambda t: read_again(case, t, path, mount))
+    return [*_of_blade(case, omega, BladeFile(path, blade.blade, blade.source, mount)), *of_turbine]
+
+
+def _of_blade(case: str, omega: float, file: BladeFile) -> list[Control]:
+    return _misread(
+        case, omega, BLADE, file.blade, lambda blade: properties.of_reading(case, replace(file, blade=blade), blade)[0]
+    )
+
+
+def _misread(
+    case: str,
+    omega: float,
+    faults: Sequence[ReaderFault],
+    right: Blade | Turbine,
+    rows: Callable[[Any], list[PropertyCheck]],
+) -> list[Control]:
+    """The results of faults; ``rows`` compares a blade or a turbine with the second reading of its file."""
+    correct_rows = rows(right)
+    failing = {row.part for row in correct_rows if row.verdict == "fail"}
     out = []
-    for fault in READER:
+    for fault in faults:
         control = Control(fault.name, "reader", fault.description, "", case, omega, ())
         if reasons := [row.reason for row in correct_rows if row.verdict == "not run"]:
             out.append(replace(control, needs=reasons[0]))
             continue
         try:
-            faulty_blade = fault.alter(file.blade)
+            wrong = fault.alter(right)
         except ValueError as error:
             out.append(replace(control, detected_by=(f"{case}, refused: {error}",)))
             continue
-        if _equal(faulty_blade, file.blade):
-            out.append(replace(control, without_effect="changes no property of this blade"))
+        if _alike(wrong, right):
+            out.append(replace(control, without_effect=f"changes no property of this {type(right).__name__.lower()}"))
             continue
         if fault.part and fault.part not in {row.part for row in correct_rows}:
             out.append(replace(control, needs=f"a file that states the {fault.part}"))
             continue
-        rows, _ = properties.of_reading(case, replace(file, blade=faulty_blade), faulty_blade)
-        failing = {row.part for row in correct_rows if row.verdict == "fail"}
-        detections = [row for row in rows if row.verdict == "fail" and row.part not in failing]
-        out.append(
-            replace(control, detected_by=tuple(f"{case}, second reading, {row.part}: fail" for row in detections))
-        )
+        parts = [row.part for row in rows(wrong) if row.verdict == "fail" and row.part not in failing]
+        out.append(replace(control, detected_by=tuple(f"{case}, second reading, {part}: fail" for part in parts)))
     return out
 
 
-def _equal(a: Blade, b: Blade) -> bool:
-    return all(np.array_equal(value, vars(b)[name]) for name, value in vars(a).items())
+def _alike(a: Any, b: Any) -> bool:
+    """Whether two descriptions are equal but for rounding."""
+    if is_dataclass(a):
+        return all(_alike(getattr(a, field.name), getattr(b, field.name)) for field in fields(a))
+    return np.allclose(a, b, rtol=1e-9, atol=1e-12) if isinstance(a, np.ndarray) else a == b

@@ -24,7 +24,7 @@ from ..judge.uncertainty import Estimate
 from ..judge.verdict import judge, unsigned
 from ..plan.blade import BladeSubject
 from ..solve import core_solver
-from .seeding import Seam, seeded
+from .seeding import Fault, seeded
 
 MESHES = ((8, 16, 32), (12, 24, 48))
 """Numbers of elements of three meshes, more than once: errors may cancel in some modes."""
@@ -39,16 +39,6 @@ NO_MESH = "meshes of 8 to 48 elements with a stable steady state"
 """Why the faults are not run on a blade that needs more elements."""
 
 Refine = Callable[[Sequence[int], Sequence[float], int], Estimate]
-
-
-@dataclass(frozen=True)
-class _Fault:
-    """A fault of judging, by its seams."""
-
-    name: str
-    description: str
-    size: str
-    seam: Seam
 
 
 @dataclass(frozen=True)
@@ -97,8 +87,8 @@ def _off(estimate: Estimate, *_: Any) -> Estimate:
     return replace(estimate, value=1.002 * estimate.value)
 
 
-def _fault(name: str, description: str, size: str, alter: Callable[..., Estimate]) -> _Fault:
-    return _Fault(name, description, size, (convergence, "from_refinement", _altered(alter)))
+def _fault(name: str, description: str, size: str, alter: Callable[..., Estimate]) -> Fault:
+    return Fault(name, "uncertainty", description, size, ((convergence, "from_refinement", _altered(alter)),))
 
 
 FAULTS = (
@@ -113,10 +103,7 @@ FAULTS = (
 
 def run(subject: BladeSubject) -> list[Control]:
     """Run the faults on a blade at its highest speed; a task for any process."""
-    controls = [
-        Control(fault.name, "uncertainty", fault.description, fault.size, subject.name, max(subject.points), ())
-        for fault in FAULTS
-    ]
+    controls = [fault.control(subject.name, max(subject.points)) for fault in FAULTS]
     try:
         solutions = [_solved(subject, elements) for elements in MESHES]
     except (*NO_STATE, ArithmeticError):
@@ -125,7 +112,7 @@ def run(subject: BladeSubject) -> list[Control]:
     uncovered = _outside(subject, solutions, values)
     out = []
     for fault, control in zip(FAULTS, controls, strict=True):
-        with seeded([fault.seam]):
+        with seeded(fault.seams):
             faulty_values = _estimates(solutions)
         uncovered_by_fault = _outside(subject, solutions, faulty_values)
         failing = {mode: change for mode, change in uncovered_by_fault.items() if mode not in uncovered}

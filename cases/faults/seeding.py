@@ -218,14 +218,10 @@ def _blinding(fault: Fault, blinded: Fault) -> Control:
 
 def _judged(fault: Fault, correct_cells: Sequence[Cell], faulty_cells: Sequence[Cell]) -> Control:
     """Result for a fault from the cells that are bad with it and not without it."""
-    was_bad = {_key(c) for c in correct_cells if c.verdict in BAD}
-    detections = [c for c in faulty_cells if c.verdict in BAD and _key(c) not in was_bad]
+    was_bad = {c.key for c in correct_cells if c.verdict in BAD}
+    detections = [c for c in faulty_cells if c.verdict in BAD and c.key not in was_bad]
     changes = [c.difference for c in detections if c.difference is not None]
     return replace(_control(fault, tuple(map(_name, detections))), change=max(changes, key=abs, default=None))
-
-
-def _key(cell: Cell) -> tuple[str, str, float, int, str, str]:
-    return cell.case, cell.code, cell.omega, cell.mode, cell.quantity, cell.where
 
 
 def _name(cell: Cell) -> str:

@@ -26,7 +26,7 @@ from ...core.blade_checks import MAX_LENGTH
 from ...core.sampling import mass_at, stiffness_at, twist_at
 from ...core.space import spatial as sp
 from . import files
-from .errors import CaseError, nearest
+from .errors import CaseError, located, nearest
 from .readers.sections import FromFile, Mounted, Sections
 from .readers.source import BladeFile, Mount, Source, Unused, unused
 
@@ -52,8 +52,8 @@ class Beam(Mounted, frozen=True, tag_field="kind", tag="beam"):
     hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="hub centre to root on the coned axis, m")] = 0.0
     rotary_inertia: Annotated[bool, Meta(description="whether the sections have moments of inertia, ρ I")] = True
 
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade; ``folder`` is not used."""
+    def blade(self, name: str) -> Blade:
+        """The blade."""
         if (self.G is None) != (self.J is None):
             raise BladeError("G and J: give both, or neither for a beam that is rigid in torsion")
         inertia = self.density if self.rotary_inertia else 0.0
@@ -81,8 +81,8 @@ class Dimensionless(Mounted, frozen=True, tag_field="kind", tag="dimensionless")
     slenderness: Annotated[float, _positive("α = √(A L² / I), dimensionless")]
     hub_ratio: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="δ, hub radius over length")] = 0.0
 
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade; ``folder`` is not used."""
+    def blade(self, name: str) -> Blade:
+        """The blade."""
         blade = uniform_blade(
             name,
             length=1.0,
@@ -124,14 +124,17 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
     """Columns without which the blade is rigid in torsion or along its axis."""
     OPTIONAL: ClassVar[tuple[str, ...]] = (*RIGID, "I_flap [kg m]", "I_edge [kg m]", "cg_edge [m]")
 
-    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
-        """The blade, and the columns of its table that a switch in the case excludes.
+    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...], BladeFile | None]:
+        """See ``Mounted``; unused are columns of the table that a switch in the case excludes.
+
+        There is no file if the case leaves out the twist or replaces the table by pieces.
 
         Raises:
             CaseError: if the table is missing or malformed.
         """
-        blade, path = self.blade(name, folder), folder / self.file
-        columns, unused_values = read_table(path, self.COLUMNS, self.OPTIONAL), ()
+        path, unused_values = folder / self.file, ()
+        columns = read_table(path, self.COLUMNS, self.OPTIONAL)
+        blade = self._blade(name, path, columns)
         for column, switch, dropped in (
             ("twist [deg]", "twisted = false", not self.twisted),
             ("cg_edge [m]", "centred = true", self.centred),
@@ -139,25 +142,13 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
             if dropped and column in columns:
                 name_, _, unit = column.partition(" ")
                 unused_values += unused(name_, columns[column], unit.strip("[]"), path, f"the case has {switch}")
-        return blade, unused_values
-
-    def file_read(self, name: str, folder: Path) -> BladeFile | None:
-        """See ``Mounted``; None if the case leaves out the twist or replaces the table by pieces."""
         if self.pieces or not self.twisted:
-            return None
+            return blade, unused_values, None
         factors = (self.mass_factor, self.bending_factor, self.bending_factor)
         mount = Mount(length=self.length, multipliers=factors, offsets=not self.centred)
-        path = folder / self.file
-        return BladeFile(path, self.blade(name, folder), Source("Southwell CSV", (path,), ""), mount)
+        return blade, unused_values, BladeFile(path, blade, Source("Southwell CSV", (path,), ""), mount)
 
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade, its table read from ``folder``.
-
-        Raises:
-            CaseError: if the table is missing or malformed.
-        """
-        path = folder / self.file
-        columns = read_table(path, self.COLUMNS, self.OPTIONAL)
+    def _blade(self, name: str, path: Path, columns: dict[str, np.ndarray]) -> Blade:
         fraction, twist, mass, flap, edge = (columns[c] for c in self.COLUMNS)
         torsion, axial = (columns.get(c, np.full_like(mass, np.inf)) for c in self.RIGID)
         if abs(fraction[-1] - 1.0) > ROOT_TOLERANCE:
@@ -166,7 +157,7 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
             )
         I_flap, I_edge, mass_offset = (columns.get(c, np.zeros_like(mass)) for c in self.OPTIONAL[len(self.RIGID) :])
         sections = offset(section_mass(mass, I_flap, I_edge), mass_offset * (not self.centred))
-        try:
+        with located(f"{path}: "):
             blade = Blade(
                 name=name,
                 stations=np.append(fraction[:-1], 1.0) * self.length,
@@ -176,8 +167,6 @@ class Stations(Mounted, frozen=True, tag_field="kind", tag="stations"):
                 hub_radius=self.hub_radius,
             )
             return self.mounted(stepped(blade, np.array(self.pieces)) if self.pieces else blade)
-        except BladeError as error:
-            raise CaseError(f"{path}: {error}") from error
 
 
 STEP = 1e-7

@@ -14,8 +14,8 @@ from math import isfinite, radians
 import numpy as np
 from numpy.typing import NDArray
 
-from ...core.blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade, BladeError
-from .errors import CaseError, nearest
+from ...core.blade import AXIAL, BEND_Y, BEND_Z, TORSION, Blade
+from .errors import CaseError, located, nearest
 
 Array = NDArray[np.float64]
 
@@ -68,10 +68,8 @@ def apply(blade: Blade, changes: Sequence[PropertyChange]) -> Blade:
     for change in changes:
         if change.factor and not change.value > 0:
             raise CaseError(f"--set {change}: a factor is positive")
-        try:
+        with located(f"--set {change}: "):
             blade = PROPERTIES[change.name](blade, change)
-        except BladeError as error:
-            raise CaseError(f"--set {change}: {error}") from error
     return blade
 
 

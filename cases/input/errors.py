@@ -1,10 +1,12 @@
 """The error raised for invalid input."""
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import contextmanager
 from difflib import get_close_matches
 
 import numpy as np
 
+from ...core.blade_checks import BladeError
 from ...core.spectrum.completeness import MissedModesError
 from ...core.spectrum.eigen import UnstableError
 from ...core.spectrum.lanczos import EigensolverError
@@ -33,6 +35,19 @@ class CaseError(ValueError):
 
 class FilesMissingError(CaseError):
     """A case whose blade is in files that are not part of the package."""
+
+
+@contextmanager
+def located(where: str, kind: type[ValueError] = BladeError) -> Iterator[None]:
+    """Turn an error of core about its input into the error that begins with the place of the input.
+
+    Raises:
+        CaseError: in place of an error of this ``kind``.
+    """
+    try:
+        yield
+    except kind as error:
+        raise CaseError(f"{where}{error}") from error
 
 
 def nearest(word: str, names: Iterable[str]) -> str:

@@ -128,6 +128,22 @@ def _in_subfolder(file: Path, tree: Path) -> bool:
     return bool(folders) and not any(name.startswith(".") for name in folders)
 
 
+@contextmanager
+def readable(path: Path, remedy: str = "correct the path") -> Iterator[None]:
+    """Turn an ``OSError`` of reading ``path`` into the error that names the file and the remedy if it does not exist.
+
+    Raises:
+        CaseError: if the file lies outside the allowed folders, or cannot be read.
+    """
+    inside(path)
+    try:
+        yield
+    except FileNotFoundError:
+        raise CaseError(f"{path}: no such file: {remedy}") from None
+    except OSError as error:
+        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
+
+
 def text(path: Path, remedy: str = "correct the path", older: bool = False) -> str:
     """Read a text file: UTF-8, or UTF-16 with a byte order mark.
 
@@ -139,13 +155,8 @@ def text(path: Path, remedy: str = "correct the path", older: bool = False) -> s
     Raises:
         CaseError: if the file cannot be read, is empty or not text, or lies outside the allowed folders.
     """
-    inside(path)
-    try:
+    with readable(path, remedy):
         raw = read_bytes(path)
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: {remedy}") from None
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
     marked = raw.startswith((codecs.BOM_UTF16_LE, codecs.BOM_UTF16_BE)) and not raw.startswith(codecs.BOM_UTF32_LE)
     if b"\0" in raw and not marked:
         raise CaseError(

@@ -16,9 +16,15 @@ from .schema import Case, read
 from .turbine_cases import TurbineCase
 
 
+def _names(folder: str = "", ending: str = "") -> tuple[str, ...]:
+    """Names of the TOML files in a folder of the package's data, sorted."""
+    stems = (Path(f.name).stem for f in (files(data) / folder).iterdir() if f.name.endswith(f"{ending}.toml"))
+    return tuple(sorted(stems))
+
+
 def names() -> tuple[str, ...]:
     """Names of the cases of the package, sorted."""
-    return tuple(sorted(Path(f.name).stem for f in files(data).iterdir() if f.name.endswith(".toml")))
+    return _names()
 
 
 def load_all() -> tuple[dict[str, Case], dict[str, str]]:
@@ -34,8 +40,7 @@ def load_all() -> tuple[dict[str, Case], dict[str, str]]:
 
 def mechanisms() -> tuple[str, ...]:
     """Names of the mechanisms of the package, sorted."""
-    folder = files(data) / "mechanisms"
-    return tuple(sorted(Path(f.name).stem for f in folder.iterdir() if f.name.endswith(".toml")))
+    return _names("mechanisms")
 
 
 def mechanism(name: str) -> Described:
@@ -56,8 +61,7 @@ def mechanism(name: str) -> Described:
 
 def turbines() -> tuple[str, ...]:
     """Names of the turbines of the package, sorted."""
-    folder = files(data) / "turbines"
-    return tuple(sorted(Path(f.name).stem for f in folder.iterdir() if f.name.endswith("-turbine.toml")))
+    return _names("turbines", "-turbine")
 
 
 def turbine(name: str) -> TurbineCase:

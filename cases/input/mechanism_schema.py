@@ -10,7 +10,7 @@ from msgspec import Meta, Struct
 
 from ...core.mechanism.joints import Kind
 from .names import Name, Typed
-from .schema import LOOSEST, Confirmations, Speeds
+from .schema import LOOSEST, Groups, Speeds, TimeLimit
 
 Three = tuple[float, float, float]
 Positive = Annotated[float, Meta(gt=0)]
@@ -130,12 +130,8 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     target: Annotated[
         float, Meta(gt=0, le=LOOSEST, description="largest difference: of frequencies relative, of damping ratios")
     ] = 1e-8
-    time_limit: Annotated[
-        float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
-    ] = 300.0
-    groups: Annotated[
-        Confirmations, Meta(description="number of independent groups that must agree with Southwell's own solver")
-    ] = 1
+    time_limit: TimeLimit = 300.0
+    groups: Groups = 1
     lacking: Annotated[str, Meta(description="reason if no group is required")] = ""
 
 

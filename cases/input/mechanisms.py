@@ -10,12 +10,11 @@ from numpy.polynomial import Polynomial
 from numpy.typing import NDArray
 
 from ...core import multibody as mb
-from ...core.blade_checks import BladeError
 from ...core.mechanism.description import at_time
 from ...core.space import spatial as sp
 from ...core.spectrum.eigen import EigenError
 from ...core.tree.spanning import compile_tree
-from .errors import CaseError, nearest
+from .errors import CaseError, located, nearest
 from .mechanism_schema import BodyData, CoordinateSpringData, Frame, JointData, MechanismFile, MotionData
 from .toml import OR_A_NAME, convert, document, finite
 
@@ -150,10 +149,8 @@ def _bushings(text: MechanismFile, path: str) -> list[mb.Beam]:
             raise CaseError(f"{where}.preload: {len(b.preload)} numbers: give 6, forces first")
         stiffness = _matrix(b.stiffness, 6, f"{where}.stiffness")
         damping = np.zeros((6, 6)) if b.damping is None else _matrix(b.damping, 6, f"{where}.damping")
-        try:
+        with located(f"{where}.", ValueError):
             law = mb.bushing(np.eye(4), stiffness, np.array(b.preload))
-        except ValueError as error:
-            raise CaseError(f"{where}.{error}") from error
         out.append(mb.Beam(b.body_a, b.body_b, law, damping, *_ends(b.at_a, b.at_b, where)))
     return out
 
@@ -164,10 +161,8 @@ def _beams(text: MechanismFile, path: str) -> list[mb.Beam]:
         names = ("EA", "GJ", "EI_y", "EI_z", "GA_y", "GA_z", "mass", "I_y", "I_z")
         section = {n: v for n in names if (v := getattr(b, n)) is not None}
         at_a, at_b = _ends(b.at_a, b.at_b, f"{path}: beams[{k}]")
-        try:
+        with located(f"{path}: beams[{k}]."):
             beam = mb.straight_beam(b.length, **section)
-        except BladeError as error:
-            raise CaseError(f"{path}: beams[{k}].{error}") from error
         out.append(mb.Beam(b.body_a, b.body_b, beam, at_a=at_a, at_b=at_b))
     return out
 
@@ -178,10 +173,8 @@ def _ends(at_a: Frame, at_b: Frame, where: str) -> tuple[Array, Array]:
 
 def _pose(frame: Frame, where: str) -> Array:
     if frame.turn is None:
-        try:
+        with located(f"{where}.", ValueError):
             return mb.at(*frame.point, axis=frame.axis if isinstance(frame.axis, str) else np.array(frame.axis))
-        except ValueError as error:
-            raise CaseError(f"{where}.{error}") from error
     if frame.axis != "z":
         raise CaseError(f"{where}: both axis and turn are given: give one of them")
     pose = sp.exp(np.array([0.0, 0.0, 0.0, *frame.turn]))
@@ -220,10 +213,8 @@ def _by_coordinate(table: Mapping[str, Mapping[str, Any]], kind: type[T], path: 
 
 def _check_names(text: MechanismFile, mechanism: mb.Mechanism, guess: Mapping[str, float], path: str) -> None:
     """Reject coordinates without a joint, and anything core rejects before it has a state."""
-    try:
+    with located(f"{path}: ", mb.MechanismError):
         coordinates = compile_tree(at_time(mechanism, 0.0)).coordinates
-    except mb.MechanismError as error:
-        raise CaseError(f"{path}: {error}") from error
     references = [("motions", m.coordinate) for m in mechanism.motions]
     references += [("coordinate_springs", s.coordinate) for s in mechanism.coordinate_springs]
     references += [("guess", name) for name in guess] + [("independent", name) for name in text.independent]

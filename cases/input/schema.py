@@ -13,12 +13,12 @@ import numpy as np
 from msgspec import UNSET, Meta, Struct, UnsetType, structs
 from numpy.typing import NDArray
 
-from ...core.blade import Blade, BladeError
+from ...core.blade import Blade
 from ...core.effects import Effects
 from ...references import published
 from . import files
 from .blades import BladeData, Dimensionless
-from .errors import CaseError, nearest
+from .errors import CaseError, located, nearest
 from .names import Name, Typed
 from .readers.source import BladeFile, Unused
 from .toml import OR_A_NAME, convert, document, finite
@@ -32,6 +32,12 @@ LOOSEST = 0.5
 """Widest allowed target."""
 
 Confirmations = Annotated[int, Meta(ge=0, le=20)]
+
+Groups = Annotated[
+    Confirmations, Meta(description="number of independent groups that must agree with Southwell's own solver")
+]
+
+TimeLimit = Annotated[float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")]
 
 
 class Speeds(Struct, frozen=True, forbid_unknown_fields=True):
@@ -56,9 +62,7 @@ class Compare(Struct, frozen=True, forbid_unknown_fields=True):
     tables: Annotated[
         tuple[str, ...], Meta(description="published tables to compare with, by name, or by path (.toml)")
     ] = ()
-    time_limit: Annotated[
-        float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
-    ] = 300.0
+    time_limit: TimeLimit = 300.0
     groups: Annotated[
         Confirmations | dict[str, Confirmations],
         Meta(
@@ -196,11 +200,8 @@ def decode(data: Mapping[str, Any], path: str, folder: Path) -> Case:
         tables, where = {**data, "blade": {**data["blade"], **changes}}, f"{path}: variants.{label}" if label else path
         blade = convert(tables, CaseFile, where).blade
         name = f"{text.name}/{label}" if label else text.name
-        try:
-            as_given, unused_values = blade.read(name, folder)
-            file = blade.file_read(name, folder)
-        except BladeError as error:
-            raise CaseError(f"{where}: blade: {error}") from error
+        with located(f"{where}: blade: "):
+            as_given, unused_values, file = blade.read(name, folder)
         variants.append(Variant(name, as_given, speeds, unused_values, file))
     return Case(path, text, tuple(variants))
 
@@ -268,10 +269,8 @@ def rad_s(table: Speeds, path: str, dimensionless: bool = False) -> NDArray[np.f
     ((unit, value),) = units.items()
     if unit == "gamma" and not dimensionless:
         raise CaseError(f'{path}: speeds.gamma: requires blade.kind = "dimensionless": give rad_s or rpm')
-    try:
+    with located(f"{path}: speeds.{unit}: ", ValueError):
         speeds = speed_range(value) if isinstance(value, str) else np.array(value, dtype=float)
-    except ValueError as error:
-        raise CaseError(f"{path}: speeds.{unit}: {error}") from error
     if not len(speeds):
         raise CaseError(f"{path}: speeds.{unit}: empty: give at least one speed, 0 for rest")
     if speeds.max() > FASTEST:

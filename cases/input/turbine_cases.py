@@ -9,7 +9,7 @@ from msgspec import Meta, Struct
 from .machines import turbines
 from .names import Typed
 from .readers.source import TurbineReading
-from .schema import LOOSEST, Confirmations, Speeds, rad_s
+from .schema import LOOSEST, Groups, Speeds, TimeLimit, rad_s
 from .toml import convert, document, finite
 
 
@@ -18,12 +18,8 @@ class TurbineCompare(Struct, frozen=True, forbid_unknown_fields=True):
 
     modes: Annotated[int, Meta(ge=1, description="number of modes, from the lowest")]
     target: Annotated[float, Meta(gt=0, le=LOOSEST, description="largest relative difference")] = 1e-3
-    time_limit: Annotated[
-        float, Meta(gt=0, le=86400, description="time limit of one solution by a foreign code, s")
-    ] = 300.0
-    groups: Annotated[
-        Confirmations, Meta(description="number of independent groups that must agree with Southwell's own solver")
-    ] = 1
+    time_limit: TimeLimit = 300.0
+    groups: Groups = 1
 
 
 class TurbineCaseFile(Struct, frozen=True, forbid_unknown_fields=True):

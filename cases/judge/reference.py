@@ -3,7 +3,6 @@
 from dataclasses import dataclass
 
 from .convergence import Compared, RefinedMode
-from .spectrum import Spectrum
 from .verdict import Effect
 
 MARGIN = 4
@@ -11,22 +10,11 @@ MARGIN = 4
 
 
 @dataclass(frozen=True)
-class Converged:
+class Converged(Compared):
     """Core's modes at one point, with the estimates and dominant motions of the compared ones, in their order."""
 
-    compared: Compared
     modes: tuple[RefinedMode, ...]
     motions: tuple[str, ...]
-
-    @property
-    def spectrum(self) -> Spectrum:
-        """All modes, also those that are not compared."""
-        return self.compared.spectrum
-
-    @property
-    def indices(self) -> tuple[int, ...]:
-        """Of the compared modes among all."""
-        return self.compared.indices
 
     @property
     def names(self) -> tuple[str, ...]:

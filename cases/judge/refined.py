@@ -24,7 +24,7 @@ def refined(
     """Cells of a code at one speed, one for each compared mode, and the frequencies of every refinement."""
     if not refinements.answers or (refinements.failure and refinements.failure.kind == "nonsense"):
         return [failed(head, omega, refinements.failure)], []
-    refined_modes = follow(refinements.answers, reference.core.compared, order, bracket)
+    refined_modes = follow(refinements.answers, reference.core, order, bracket)
     note = f"finer: {refinements.failure.reason}" if refinements.failure else ""
     doubt = (
         _extra(reference, refinements.answers[-1], refined_modes)

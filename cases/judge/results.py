@@ -8,6 +8,9 @@ Verdict = Literal[
 ]
 Unit = Literal["rad_s", "rpm", "gamma"]
 
+Key = tuple[str, str, float, int, str, str]
+"""What identifies a cell in another run: case, code, rotor speed (rad/s), mode, quantity, and where."""
+
 
 @dataclass(frozen=True)
 class Cell:
@@ -69,6 +72,11 @@ class Cell:
     ordinal: int = 0
     quantity: str = "frequency"
     where: str = ""
+
+    @property
+    def key(self) -> Key:
+        """What identifies the cell in another run."""
+        return self.case, self.code, self.omega, self.mode, self.quantity, self.where
 
     @property
     def name(self) -> str:

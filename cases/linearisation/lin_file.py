@@ -85,13 +85,8 @@ def text(path: Path) -> str:
     Raises:
         CaseError: if it cannot be read, is damaged, is not text, or is larger than 256 MB.
     """
-    files.inside(path)
-    try:
+    with files.readable(path):
         raw = read_bytes(path, LARGEST_DATA)
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file: correct the path") from None
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error.strerror}): give a readable file") from error
     if raw.startswith(b"\x1f\x8b"):
         try:
             with gzip.open(io.BytesIO(raw)) as compressed:

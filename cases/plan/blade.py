@@ -4,12 +4,10 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import partial
 from importlib.metadata import version
-from pathlib import Path
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
-from .. import data
 from ..input.readers import BladeFile
 from ..input.schema import Case, Variant
 from ..judge.results import BudgetEntry, PropertyCheck, Setting
@@ -20,12 +18,12 @@ from . import user_columns
 from .blade_columns import columns
 from .column import Column
 from .settings import setting
-from .subject import PropertyChecks
+from .subject import PropertyChecks, Subject
 from .user_results import UserResults
 
 
 @dataclass(frozen=True)
-class BladeSubject:
+class BladeSubject(Subject):
     """One blade of a case; see ``Subject``."""
 
     case: Case
@@ -40,12 +38,6 @@ class BladeSubject:
     def path(self) -> str:
         """See ``Subject``."""
         return self.case.path
-
-    @property
-    def users(self) -> bool:
-        """Whether the blade does not come with the package."""
-        package = Path(data.__file__ or "").parent
-        return package not in Path(self.path).parents
 
     @property
     def points(self) -> tuple[float, ...]:

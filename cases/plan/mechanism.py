@@ -15,7 +15,7 @@ from ...references.protocol.description import Description
 from ...references.protocol.interface import Independence
 from ...references.protocol.process import Limits
 from ...references.theories import blade_formulae
-from ..input.errors import CaseError, nearest
+from ..input.errors import CaseError, located, nearest
 from ..input.mechanism_schema import Compare
 from ..input.mechanisms import Described
 from ..input.schema import rad_s
@@ -24,12 +24,12 @@ from ..judge.results import Setting
 from ..solve.mechanism import QUANTITIES, answers_at, compared, formula, references
 from ..solve.reference import References
 from .column import Column, unasked
-from .subject import NotABlade
+from .subject import Subject
 from .user_results import UserResults
 
 
 @dataclass(frozen=True)
-class MechanismSubject(NotABlade):
+class MechanismSubject(Subject):
     """A mechanism with its speeds; see ``Subject``.
 
     Attributes:
@@ -113,10 +113,8 @@ def subject(described: Described) -> MechanismSubject:
         raise CaseError(
             f"{path}: compare.groups: give groups = 0 and compare.lacking, the reason, together, or neither"
         )
-    try:
+    with located(f"{path}: rotor: ", mb.MechanismError):
         at_rate(described.mechanism, text.rotor, 0.0)
-    except mb.MechanismError as error:
-        raise CaseError(f"{path}: rotor: {error}") from error
     if text.closed_form and text.closed_form.formula not in blade_formulae.FORMULAE:
         advice = nearest(text.closed_form.formula, blade_formulae.FORMULAE)
         raise CaseError(f"{path}: closed_form.formula: {text.closed_form.formula!r}: no such formula: {advice}")

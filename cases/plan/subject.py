@@ -4,13 +4,16 @@ A blade of a case, a mechanism and a turbine are subjects. The run knows no more
 references of every subject, then its columns.
 """
 
+from abc import ABC, abstractmethod
 from collections.abc import Callable, Collection, Sequence
 from dataclasses import dataclass
-from typing import Any, Protocol
+from pathlib import Path
+from typing import Any
 
 from ...core.blade import Blade
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
+from .. import data
 from ..input.readers import BladeFile
 from ..judge.results import BudgetEntry, PropertyCheck, Setting
 from .column import Column
@@ -25,57 +28,39 @@ class PropertyChecks:
     tasks: Sequence[Callable[[], list[PropertyCheck]]] = ()
 
 
-NOT_CHECKED = PropertyChecks()
-"""Of a subject whose properties are not checked."""
+class Subject(ABC):
+    """One subject of a run. What its methods return can be pickled, because it is executed in other processes.
 
+    Attributes:
+        name: in the results: that of the case, followed by a slash and the blade's if the case has several.
+        path: of its file, for messages.
+        points: where it is asked: rotor speeds, rad/s, ascending.
+        cells: number of cells that a column must have at each point: one for each compared quantity of each compared mode.
+        time_limit: of one solution by a foreign code, s, unless the request gives another.
+        tables: names of the published tables with which it is compared.
+        blade: the blade that codes are asked whether they accept; None if the subject is none.
+        file: the file that its blade was read from; None if there is none, or if it was changed since.
+    """
 
-class Subject(Protocol):
-    """One subject of a run. What its methods return can be pickled, because it is executed in other processes."""
-
-    @property
-    def name(self) -> str:
-        """Name in the results: that of the case, followed by a slash and the blade's if the case has several."""
-        ...
-
-    @property
-    def path(self) -> str:
-        """Its file, for messages."""
-        ...
-
-    @property
-    def points(self) -> tuple[float, ...]:
-        """Where it is asked: rotor speeds, rad/s, ascending."""
-        ...
-
-    @property
-    def cells(self) -> int:
-        """Number of cells that a column must have at each point: one for each compared quantity of each compared mode."""
-        ...
+    name: str
+    path: str
+    points: tuple[float, ...]
+    cells: int
+    time_limit: float
+    tables: tuple[str, ...] = ()
+    blade: Blade | None = None
+    file: BladeFile | None = None
 
     @property
-    def time_limit(self) -> float:
-        """Time limit of one solution by a foreign code, s, unless the request gives another."""
-        ...
+    def users(self) -> bool:
+        """Whether it does not come with the package."""
+        return Path(data.__file__ or "").parent not in Path(self.path).parents
 
-    @property
-    def tables(self) -> tuple[str, ...]:
-        """Names of the published tables with which it is compared."""
-        ...
-
-    @property
-    def blade(self) -> Blade | None:
-        """The blade that codes are asked whether they accept; None if the subject is none."""
-        ...
-
-    @property
-    def file(self) -> BladeFile | None:
-        """The file that its blade was read from; None if there is none, or if it was changed since."""
-        ...
-
+    @abstractmethod
     def setting(self) -> Setting:
         """Its description in a report."""
-        ...
 
+    @abstractmethod
     def columns(
         self, codes: Sequence[Description], limits: Limits, user_results: Sequence[UserResults]
     ) -> list[Column]:
@@ -86,34 +71,17 @@ class Subject(Protocol):
             limits: of each solution by a foreign code.
             user_results: results of other programs and measurements.
         """
-        ...
 
+    @abstractmethod
     def references(self, columns: Sequence[Column]) -> Callable[[], dict[Any, list[Any]]]:
         """The task that solves core's references: effects → a reference, or a failure, at each point."""
-        ...
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """The second reading of its file, and the tasks of all other checks of its properties; arguments as for ``columns``."""
-        ...
+        return PropertyChecks()
 
     def error_budget(self) -> Callable[[], list[BudgetEntry]] | None:
         """The task that splits core's error into its causes; None if there is none for this kind of subject."""
-        ...
-
-
-class NotABlade:
-    """What a subject has that is not a blade: no printed tables, and no properties at stations that could be checked."""
-
-    tables: tuple[str, ...] = ()
-    blade = None
-    file = None
-
-    def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
-        """See ``Subject``."""
-        return NOT_CHECKED
-
-    def error_budget(self) -> None:
-        """See ``Subject``."""
         return None
 
 

@@ -48,8 +48,8 @@ def _read(
     if not isinstance(subject, str):
         return subject
     if _deck(subject):
-        if not request.blade_only and (turbine_subject := _turbine(subject, decks, request)):
-            return turbine_subject
+        if not request.blade_only and turbines.is_turbine(Path(subject)):
+            return _turbine(Path(subject), decks, request)
         return _of_blade_file(subject, decks, request.mount)
     if subject in library.mechanisms() or (subject.endswith(".toml") and mechanisms.matches_format(Path(subject))):
         return mechanism.subject(library.mechanism(subject))
@@ -63,19 +63,11 @@ def _deck(name: str) -> bool:
     return is_blade_file(name) or turbines.is_turbine(Path(name))
 
 
-def _turbine(
-    name: str, decks: tuple[tuple[float, ...], bool] | None, request: Request
-) -> turbine.TurbineSubject | None:
-    """The turbine in a file; None if the file is not that of a turbine.
-
-    Speeds that are not given are those of added linearisations, or that of the file.
-    """
-    path = Path(name)
-    if not turbines.is_turbine(path):
-        return None
+def _turbine(path: Path, decks: tuple[tuple[float, ...], bool] | None, request: Request) -> turbine.TurbineSubject:
+    """The turbine in a file; speeds that are not given are those of added linearisations, or that of the file."""
     reading = turbines.read(path, request.mount)
     at, rpm = decks or (linearised.speeds(request.add) or (reading.speed,), True)
-    return turbine.subject(path, reading.turbine, reading.source, at, rpm, request.mount)
+    return turbine.subject(path, reading, at, rpm, request.mount)
 
 
 def _of_blade_file(name: str, decks: tuple[tuple[float, ...], bool] | None, mount: Mount) -> Case:

@@ -16,10 +16,9 @@ from ...core.turbine.turbine import Turbine
 from ...references.protocol.description import Description
 from ...references.protocol.process import Limits
 from ...references.readers.turbine_mass import Weighed
-from .. import data
 from ..input import readers
 from ..input.errors import CaseError
-from ..input.readers.source import Mount, Source
+from ..input.readers.source import Mount, Source, TurbineReading
 from ..input.turbine_cases import TurbineCase
 from ..judge.cells import Head
 from ..judge.results import PropertyCheck, Setting
@@ -33,7 +32,7 @@ from ..solve.turbine_reading import read_again
 from . import linearised
 from .column import Column, unasked
 from .settings import NOT_USED
-from .subject import NOT_CHECKED, NotABlade, PropertyChecks
+from .subject import PropertyChecks, Subject
 from .user_results import UserResults
 
 MODES, TARGET = 8, 1e-3
@@ -41,7 +40,7 @@ MODES, TARGET = 8, 1e-3
 
 
 @dataclass(frozen=True)
-class TurbineSubject(NotABlade):
+class TurbineSubject(Subject):
     """A turbine with its speeds; see ``Subject``.
 
     Attributes:
@@ -79,11 +78,6 @@ class TurbineSubject(NotABlade):
                 f"{self.path}: two blades: none of the codes solves them on a tower; `southwell campbell` does, by Floquet's "
                 "and Hill's methods, and --blade-only verifies one blade"
             )
-
-    @property
-    def users(self) -> bool:
-        """Whether the turbine does not come with the package."""
-        return Path(data.__file__ or "").parent not in Path(self.path).parents
 
     @property
     def deck(self) -> Path | None:
@@ -154,7 +148,7 @@ class TurbineSubject(NotABlade):
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """See ``Subject``; a second reading of OpenFAST's or HAWC2's files."""
         if self.deck is None:
-            return NOT_CHECKED
+            return PropertyChecks()
         rows, weighed = self.second_reading(self.deck)
         if weighed is None:
             return PropertyChecks(rows)
@@ -189,12 +183,10 @@ def of_case(case: TurbineCase) -> TurbineSubject:
     )
 
 
-def subject(
-    path: Path, turbine: Turbine, source: Source, points: Sequence[float], rpm: bool, mount: Mount | None = None
-) -> TurbineSubject:
+def subject(path: Path, reading: TurbineReading, points: Sequence[float], rpm: bool, mount: Mount) -> TurbineSubject:
     """A turbine that is given only by its file, at these speeds, rad/s."""
     name = re.sub(r"[^a-z0-9.-]+", "-", path.stem.lower()).strip("-.") or "turbine"
-    return TurbineSubject(name, str(path), turbine, tuple(points), rpm, source, mount=mount or Mount())
+    return TurbineSubject(name, str(path), reading.turbine, tuple(points), rpm, reading.source, mount=mount)
 
 
 def _mass(beam: Blade) -> float:

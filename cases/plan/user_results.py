@@ -21,7 +21,7 @@ BModes' output, ``NAME=FILE.out``, is read as it is; the rotor speed is that of 
 
 import math
 import re
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -240,24 +240,19 @@ def _no_repeats(rows: Sequence[UserFrequency], path: Path, measured: bool) -> No
         lines[key] = row.line
 
 
-def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[float]], codes: Iterable[str]) -> None:
-    """Check that names are unused, and that the run has the blade and speed of every row.
+def check(user_results: Sequence[UserResults], speeds: Mapping[str, Sequence[float]]) -> None:
+    """Check that the run has the blade and speed of every row.
 
     The speed of a row only has to be within the range of the run's speeds.
 
     Args:
         user_results: results of all files.
         speeds: name of each blade of the run → its speeds, rad/s.
-        codes: names of the codes.
 
     Raises:
         CaseError: if not; one line, as for ``read``.
     """
-    used_names = set(codes)
     for results in user_results:
-        if results.name in used_names:
-            raise CaseError(f"--add {results.name}: a code or another file has this name: give another")
-        used_names.add(results.name)
         for row in results.rows:
             where = f"{results.path}: line {row.line}"
             if row.blade and row.blade not in speeds:

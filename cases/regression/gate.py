@@ -11,9 +11,9 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 
 from ..judge.quantities import difference
-from ..judge.results import Verdict
+from ..judge.results import Key, Verdict
 from . import properties
-from .history import Detection, Entry, Key, Point
+from .history import Detection, Entry, Point
 from .properties import PropertyChange
 
 MOVED = 1e-9

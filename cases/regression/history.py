@@ -16,7 +16,7 @@ import portalocker
 
 from ...core.regular_files import LARGEST_DATA, read_bytes
 from ..judge import checks
-from ..judge.results import Cell, Run, Verdict
+from ..judge.results import Key, Run, Verdict
 from . import properties
 from .properties import Property
 
@@ -38,18 +38,9 @@ class Point(msgspec.Struct, frozen=True, array_like=True):
     where: str = ""
 
     @property
-    def key(self) -> "Key":
-        """Key that identifies the cell in another run."""
-        return key(self)
-
-
-Key = tuple[str, str, float, int, str, str]
-"""Case, code, rotor speed (rad/s), mode, quantity, and where."""
-
-
-def key(of: Cell | Point) -> Key:
-    """Key that identifies a cell in another run."""
-    return of.case, of.code, of.omega, of.mode, of.quantity, of.where
+    def key(self) -> Key:
+        """What identifies the cell in another run."""
+        return self.case, self.code, self.omega, self.mode, self.quantity, self.where
 
 
 class Detection(msgspec.Struct, frozen=True, array_like=True):

@@ -151,7 +151,7 @@ def _converged(
             for k, mode in zip(target.indices, follow(solved, target, plan.order), strict=True)
         )
         motions = tuple(FAMILIES[k] for k in energies[list(target.indices)].argmax(1))
-        out[omega] = Converged(target, modes, motions)
+        out[omega] = Converged(target.spectrum, target.indices, modes, motions)
     return out
 
 

@@ -25,14 +25,11 @@ from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
 from ...core.participation import families, numbered, participation
-from ...core.solve import mesh_modes
-from ...core.spectrum.eigen import UnstableError
-from ...core.steady.blade_state import SteadyStateError
 from ..input.schema import Case, Compare, Variant
 from ..judge.pairing import aligned, pair, weights
 from ..judge.results import BudgetEntry, Cell
 from ..judge.spectrum import of_blade
-from .core_solver import qualifying
+from .core_solver import answers, qualifying
 from .published_tables import about
 
 ELEMENTS = 50
@@ -69,7 +66,7 @@ def solve(case: Case, variant: Variant) -> list[BudgetEntry]:
     printed_speeds = [d.speed * table.speed for table in about(blade, compare.tables) for d in table.series.data]
     printed_at = [omega for omega in variant.speeds.tolist() if np.isclose(omega, printed_speeds, rtol=1e-9).any()]
     omega, count = max(printed_at or variant.speeds.tolist()), 2 * compare.modes + 2
-    correct = _solved(blade, omega, FINE, count)
+    correct = solved(blade, omega, FINE, count)
     if correct is None:
         return []
     rows = []
@@ -82,15 +79,15 @@ def solve(case: Case, variant: Variant) -> list[BudgetEntry]:
 
 def _altered(blade: Blade, omega: float, elements: int, count: int) -> Iterator[Altered]:
     for part, (mass, stiffness) in WAYS.items():
-        coarse = _solved(blade, omega, elements, count, mass=mass, stiffness=stiffness)
+        coarse = solved(blade, omega, elements, count, mass=mass, stiffness=stiffness)
         yield "discretisation", f"{part}, {elements} elements", coarse
     for part, effects in EFFECTS.items():
-        yield "model form", part, _solved(blade, omega, FINE, count, effects)
+        yield "model form", part, solved(blade, omega, FINE, count, effects)
     for part, altered_blade in _with_other_strains(blade):
-        yield "model form", part, _solved(altered_blade, omega, FINE, count)
+        yield "model form", part, solved(altered_blade, omega, FINE, count)
 
 
-def _solved(
+def solved(
     blade: Blade,
     omega: float,
     elements: int,
@@ -99,12 +96,13 @@ def _solved(
     mass: Mass = "consistent",
     stiffness: Measure = "corotational",
 ) -> Modes | None:
-    """None without an answer: a blade without the omitted stiffness may be unconstrained."""
+    """Core's modes on one mesh; None without an answer, as of an altered blade that nothing holds."""
     try:
         with np.errstate(invalid="ignore"):
-            return mesh_modes(blade, omega, elements, count, mass=mass, stiffness=stiffness, effects=effects)
-    except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
+            (answer,) = answers(blade, [(omega, elements, count)], mass, stiffness, effects)
+    except (ArithmeticError, ValueError):
         return None
+    return answer if isinstance(answer, Modes) else None
 
 
 def _with_other_strains(blade: Blade) -> Iterator[tuple[str, Blade]]:
@@ -140,9 +138,9 @@ def uncertain(case: str, rows: Sequence[BudgetEntry], cells: Sequence[Cell]) -> 
             ("discretisation", "codes, refined", "code"),
             ("rounding", "printed digits", "table"),
         ):
-            sizes = [c.uncertainty or 0.0 for c in comparable if c.role == role]
-            if role == "code":  # an error bound given by a code is not a discretisation error
-                sizes = [c.uncertainty or 0.0 for c in comparable if c.role == role and c.order is not None]
+            of_role = [c for c in comparable if c.role == role]
+            # an error bound given by a code is not a discretisation error
+            sizes = [c.uncertainty or 0.0 for c in of_role if role != "code" or c.order is not None]
             if sizes:
                 out.append(BudgetEntry(case, omega, name, cause, part, max(sizes), bound=True))
     return out

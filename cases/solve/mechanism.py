@@ -21,7 +21,7 @@ from ...references.theories import blade_formulae
 from ..input.mechanism_schema import ClosedForm
 from ..input.mechanisms import Described
 from ..judge.cells import Head, Rows, joined
-from ..judge.convergence import Compared, RefinedMode
+from ..judge.convergence import RefinedMode
 from ..judge.pairing import Pair
 from ..judge.reference import Converged, Reference
 from ..judge.same import same_discretisation_cells
@@ -61,7 +61,7 @@ def _reference(described: Described, omega: float, count: int) -> Reference | Fa
     )
     frequencies = spectrum.frequencies[:count].tolist()
     modes = tuple(RefinedMode(Estimate(f, ROUNDING), Pair(k, 1.0), ()) for k, f in enumerate(frequencies))
-    core = Converged(Compared(spectrum, tuple(range(count))), modes, tuple(joints[:count]))
+    core = Converged(spectrum, tuple(range(count)), modes, tuple(joints[:count]))
     return Reference(core, tuple(frequencies), (1.0,) * count, ((),) * count, QUANTITIES)
 
 

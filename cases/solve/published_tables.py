@@ -144,7 +144,7 @@ def discretised(
     blade: Blade, omega: float, effects: Effects, reference: Reference, source: Discretisation
 ) -> list[Coarse | None]:
     """Core's answers for the reference's modes in the source's discretisation, with limits; None without a partner."""
-    n, compared = source.elements, reference.core.compared
+    n, compared = source.elements, reference.core
 
     def ask(runs: Sequence[Run]) -> list[Answer]:
         return of_blades(answers(blade, runs, source.mass, source.stiffness, effects))

@@ -18,7 +18,7 @@ from ...references.protocol.process import Failure, Limits
 from ...references.protocol.worker import Run, turbine_answers
 from ..input.errors import NO_STATE
 from ..judge.cells import Head, Rows, joined
-from ..judge.convergence import Compared, RefinedMode
+from ..judge.convergence import RefinedMode
 from ..judge.pairing import Pair, pair
 from ..judge.reference import MARGIN, Converged, Reference
 from ..judge.refined import refined
@@ -60,7 +60,7 @@ def _reference(coarse: Machine, fine: Machine, omega: float, count: int) -> Refe
         change = None if partner.mode is None else abs(rough.frequencies[partner.mode] / frequencies[k] - 1.0)
         doubt = None if change is None else max(float(change), ROUNDING)
         modes.append(RefinedMode(Estimate(frequencies[k], doubt), Pair(k, 1.0), ()))
-    core = Converged(Compared(exact, indices), tuple(modes), (MOTION,) * len(indices))
+    core = Converged(exact, indices, tuple(modes), (MOTION,) * len(indices))
     count_compared = len(indices)
     return Reference(core, tuple(frequencies), (1.0,) * count_compared, ((),) * count_compared)
 

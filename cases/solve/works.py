@@ -113,7 +113,7 @@ def papers_equations(head: Head, blade: Blade, core: References, elements: int =
 
 def refinements(ask: Ask, refining: Refining, core: References) -> list[tuple[float, Reference, Refinements]]:
     """Refinements of a solver at each of core's speeds, which are to converge for the modes that core has there."""
-    compared = {omega: r.core.compared for omega, r in core}
+    compared = {omega: r.core for omega, r in core}
     count = max(r.core.count for _, r in core)
     solved = solve(ask, list(compared), refining, count, lambda omega, _: compared[omega])
     return [(omega, r, s) for (omega, r), s in zip(core, solved, strict=True)]

@@ -85,9 +85,6 @@ def tasks(study: Study, numbers: Iterable[int]) -> Iterator[tuple[int, Task]]:
                 sample=sample_number,
                 changes=changes(study.properties, values[sample_number]),
                 speeds=study.speeds,
-                modes=text.modes,
-                elements=text.elements,
-                accuracy=text.accuracy,
-                allow_large_strain=text.allow_large_strain,
+                text=text,
             ),
         )

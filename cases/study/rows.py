@@ -13,6 +13,7 @@ from ...references.protocol.process import raised
 from ..campbell.sweep import NamedMode, sweep
 from ..input.changes import PropertyChange, apply
 from ..input.errors import CaseError
+from .schema import StudyFile
 
 INTERNAL = "internal error of southwell: "
 """Beginning of the reason of a row that a defect of this package has cost."""
@@ -27,18 +28,14 @@ class Task:
         sample: number of the sample, from 0.
         changes: the sampled properties.
         speeds: rotor speeds, rad/s.
-        modes: number of modes, from the lowest.
-        elements, accuracy, allow_large_strain: as in ``core.solve.modes``.
+        text: the study file, which says how modes are solved.
     """
 
     blade: Blade
     sample: int
     changes: tuple[PropertyChange, ...]
     speeds: tuple[float, ...]
-    modes: int
-    elements: int | None
-    accuracy: float
-    allow_large_strain: bool
+    text: StudyFile
 
 
 class Row(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
@@ -112,10 +109,10 @@ def _answers(task: Task) -> Iterator[tuple[float, list[NamedMode] | str]]:
     except Exception as error:
         yield from ((omega, _reason(error, task)) for omega in task.speeds)
         return
-    solutions = None
+    solutions, text = None, task.text
     for k, omega in enumerate(task.speeds):
         solutions = solutions or sweep(
-            blade, task.speeds[k:], task.elements, task.modes, task.accuracy, task.allow_large_strain
+            blade, task.speeds[k:], text.elements, text.modes, text.accuracy, text.allow_large_strain
         )
         try:
             answer = next(solutions)

@@ -6,18 +6,14 @@ Each fault that every run seeds (``faults.table.FAST``) is solved in core alone.
 
 from dataclasses import dataclass
 
-import numpy as np
-
 from ...core.blade import Blade
 from ...core.element.discretize import Mass
 from ...core.element.measures import Measure
 from ...core.modes import Modes
-from ...core.spectrum.eigen import UnstableError
-from ...core.steady.blade_state import SteadyStateError
 from ..faults import table
 from ..faults.seeding import seeded
 from ..input.schema import Compare, Variant
-from ..solve import core_solver
+from ..solve import core_solver, error_budget
 from ..solve.error_budget import ModeChange, changed
 
 ELEMENTS = core_solver.COARSEST
@@ -49,37 +45,26 @@ def solve(variant: Variant, compare: Compare) -> list[FaultEffect]:
     """Solve one blade with every fault at every speed."""
     out = []
     for omega in variant.speeds.tolist():
-        solutions = {how: _solved("", variant.blade, omega, compare, how) for how in (CONSISTENT, LUMPED)}
+        count = 2 * compare.modes + 2
+        solutions = {how: solved("", variant.blade, omega, count, how) for how in (CONSISTENT, LUMPED)}
         for fault in table.FAST:
             how = DISCRETISATIONS.get(fault, CONSISTENT)
-            faultless, faulty = solutions[how], _solved(fault, variant.blade, omega, compare, how)
+            faultless, faulty = solutions[how], solved(fault, variant.blade, omega, count, how)
             modes = changed(faultless, faulty, variant.blade, compare) if faultless and faulty else ()
             out.append(FaultEffect(fault, omega, modes))
     return out
 
 
-def _solved(fault: str, blade: Blade, omega: float, compare: Compare, how: tuple[Mass, Measure]) -> Modes | None:
-    """None without an answer: a faulty model may have no steady state, be singular, or give non-finite numbers."""
-    try:
-        with np.errstate(invalid="ignore"):
-            return core(fault, blade, omega, ELEMENTS, 2 * compare.modes + 2, how)
-    except (SteadyStateError, UnstableError, ArithmeticError, ValueError):
-        return None
-
-
-def core(
-    fault: str, blade: Blade, omega: float, elements: int, count: int, how: tuple[Mass, Measure] = CONSISTENT
-) -> Modes | None:
-    """Core's modes with one fault of the table; none with an empty name. None without a stable steady state.
+def solved(fault: str, blade: Blade, omega: float, count: int, how: tuple[Mass, Measure] = CONSISTENT) -> Modes | None:
+    """Core's modes with one fault of the table, none with an empty name; None without a stable steady state.
 
     Args:
         fault: name in ``faults.table``; empty for core without a fault.
         blade: the blade.
         omega: rotor speed, rad/s.
-        elements: number of elements.
         count: number of modes.
         how: how mass is lumped, and the frame in which the stiffness is linear.
     """
+    mass, stiffness = how
     with seeded(table.BY_NAME[fault].seams if fault else ()):
-        (answer,) = core_solver.answers(blade, [(omega, elements, count)], *how)
-    return answer if isinstance(answer, Modes) else None
+        return error_budget.solved(blade, omega, ELEMENTS, count, mass=mass, stiffness=stiffness)

@@ -11,9 +11,8 @@ from pathlib import Path
 from platform import python_version
 from typing import Any
 
-from ...core.blade import Blade
 from ...references.protocol import sources
-from ...references.protocol.description import Description, describe
+from ...references.protocol.description import Description
 from ...references.protocol.process import Failure, Limits, raised
 from ...references.protocol.store import StoreError
 from ..diagnosis import columns as diagnosis
@@ -21,9 +20,8 @@ from ..input.errors import CaseError
 from ..judge.cells import Rows, failing
 from ..judge.results import BudgetEntry, Cell, Diagnosed, Level, Origin, Planned, PropertyCheck, Run
 from ..plan.column import Column, ColumnError
-from ..plan.names import unique
-from ..plan.subject import NOT_CHECKED, PropertyChecks, Subject, asked_about, speeds_of_blades
-from ..plan.user_results import UserResults, check
+from ..plan.subject import PropertyChecks, Subject
+from ..plan.user_results import UserResults
 from ..solve import error_budget
 
 
@@ -48,14 +46,13 @@ class Progress:
 
 @dataclass(frozen=True)
 class _Task:
-    """One task for one blade: core's references (no column), a column, or the error budget."""
+    """One task for one subject: core's references (no column), or a column."""
 
     subject: Subject
     columns: tuple[Column, ...]
     core: Callable[[], dict[Any, list[Any]]]
+    properties: PropertyChecks
     column: Column | None = None
-    error_budget: Callable[[], list[BudgetEntry]] | None = None
-    properties: PropertyChecks = NOT_CHECKED
 
     @property
     def label(self) -> str:
@@ -64,7 +61,7 @@ class _Task:
 
 def run(
     subjects: Sequence[Subject],
-    codes: Sequence[str | Description],
+    codes: Sequence[Description],
     executor: Executor,
     on_progress: Callable[[Progress], None] = lambda _: None,
     seconds: float | None = None,
@@ -78,7 +75,7 @@ def run(
 
     Args:
         subjects: what is verified.
-        codes: names or import paths, see ``references.protocol.registry``, or descriptions.
+        codes: descriptions of the codes, which have been asked about every blade.
         executor: where tasks run: threads, processes, another machine's.
         on_progress: called when the run starts and whenever a task ends; an exception from it stops the run.
         seconds: time limit for one solution by a foreign code, s; by default the limit of each case.
@@ -88,17 +85,8 @@ def run(
         parts: whether to read files again, weigh the codes' models, and compute the error budget of core and the diagnoses
             of columns that fail.
         on_plan: called with every column before the first task starts.
-
-    Raises:
-        CaseError: if added results do not belong to these subjects, or a name occurs twice.
-        UnknownCodeError: if a code is unknown.
     """
-    descriptions = _described(codes, asked_about(subjects))
-    unique(subjects, descriptions, user_results)
-    check(user_results, speeds_of_blades(subjects), [c.name for c in descriptions])
-    plans = _tasks(
-        subjects, descriptions, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results, parts
-    )
+    plans = _tasks(subjects, codes, lambda s: Limits(seconds or s.time_limit, memory, reuse), user_results, parts)
     plan = tuple(_planned(task, column) for task in plans for column in task.columns)
     on_plan(plan)
     total = sum(1 + len(task.columns) for task in plans)
@@ -125,7 +113,8 @@ def run(
                         pending[executor.submit(column, points, answer[column.effects])] = replace(task, column=column)
                 if parts and not split and all(t.column for t in pending.values()):
                     # after all columns: they are short, so that no worker is idle at the end
-                    split = [(task, executor.submit(task.error_budget)) for task in plans if task.error_budget]
+                    budgets = [(task, task.subject.error_budget()) for task in plans]
+                    split = [(task, executor.submit(budget)) for task, budget in budgets if budget]
                     weighed = [executor.submit(weigh) for task in plans for weigh in task.properties.tasks]
                 finished = total - sum(1 if t.column else 1 + len(t.columns) for t in pending.values())
                 on_progress(Progress(finished, total, _running(pending), tuple(new[0]), tuple(new[1])))
@@ -140,7 +129,7 @@ def run(
     return Run(
         cells=tuple(cell for cells, _ in ordered for cell in cells),
         levels=tuple(level for _, levels in ordered for level in levels),
-        versions=versions(descriptions, user_results),
+        versions=versions(codes, user_results),
         settings=tuple(subject.setting() for subject in subjects),
         error_budget=tuple(made_of),
         origins=tuple(
@@ -173,18 +162,6 @@ def _planned(task: _Task, column: Column) -> Planned:
     return Planned(task.subject.name, column.head.code, points, task.subject.cells if points else 0)
 
 
-def _described(codes: Sequence[str | Description], blades: Sequence[Blade]) -> list[Description]:
-    """Descriptions of the codes, which have been asked about every blade of the run."""
-    ready = {
-        c.asked: c
-        for c in codes
-        if isinstance(c, Description) and (c.failure or not c.blades or len(c.refused) == len(blades))
-    }
-    names = [c if isinstance(c, str) else c.asked for c in codes]
-    ready |= {c.asked: c for c in describe([name for name in names if name not in ready], blades)}
-    return [ready[name] for name in names]
-
-
 def _answer(future: Future[Any]) -> Any:
     """The result of a task, or a failure if this package raised an error; only the cells of that task are lost."""
     try:
@@ -210,9 +187,8 @@ def _tasks(
         descriptions = [replace(code, refused=code.refused[blades : blades + 1]) for code in codes]
         blades += subject.blade is not None
         columns = dated(subject.columns(descriptions, limits(subject), user_results), codes)
-        checks = subject.property_checks(descriptions, limits(subject)) if parts else NOT_CHECKED
-        core = subject.references(columns)
-        out.append(_Task(subject, columns, core, error_budget=subject.error_budget(), properties=checks))
+        checks = subject.property_checks(descriptions, limits(subject)) if parts else PropertyChecks()
+        out.append(_Task(subject, columns, subject.references(columns), checks))
     return out
 
 
@@ -225,11 +201,9 @@ def dated(columns: Sequence[Column], codes: Sequence[Description]) -> tuple[Colu
 
 def _parts(task: _Task, parts: list[BudgetEntry], rows: dict[tuple[str, str], Rows]) -> list[BudgetEntry]:
     """The error budget of core, with the uncertainties of the compared numbers."""
-    return parts + error_budget.uncertain(task.subject.name, parts, _cells(task, rows))
-
-
-def _cells(task: _Task, rows: dict[tuple[str, str], Rows]) -> list[Cell]:
-    return [cell for column in task.columns for cell in rows[task.subject.name, column.name][0]]
+    name = task.subject.name
+    cells = [cell for column in task.columns for cell in rows[name, column.name][0]]
+    return parts + error_budget.uncertain(name, parts, cells)
 
 
 def versions(codes: Iterable[Description], user_results: Sequence[UserResults] = ()) -> dict[str, str]:

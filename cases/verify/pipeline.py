@@ -119,7 +119,7 @@ def planned(request: Request, observer: Observer) -> Plan:
     added_results = [measurements.user_results(text, defaults) for text in request.add]
     measurements.check(added_results, request.data_uncertainty, request.input_uncertainty)
     names.unique(selection, codes, added_results)
-    user_results.check(added_results, speeds_of_blades(selection), [c.name for c in codes])
+    user_results.check(added_results, speeds_of_blades(selection))
     linearised.check(added_results, [subject.name for subject in selection if isinstance(subject, TurbineSubject)])
     empty_run = Run(
         cells=(),
@@ -180,10 +180,10 @@ def _solved(
     state = tuple(f"{name} {version}" for name, version in sorted(plan.empty_run.versions.items()))
     serial = request.execution.threads or request.execution.workers == 0
     tasks, trials = Stored(pool, users, answers), Stored(Serial() if serial else pool, users, answers, state)
-    users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and own.is_users(subject)]
+    users_blades = [subject for subject in plan.subjects if isinstance(subject, BladeSubject) and subject.users]
     on_blades = own.chosen(plan.faults) if users_blades else ()
     turbines = [subject for subject in plan.subjects if isinstance(subject, TurbineSubject) and subject.users]
-    on_turbines = own_turbine.chosen(plan.faults) if turbines else ()
+    on_turbines = own.chosen(plan.faults, own_turbine.NAMES) if turbines else ()
     # faults of a blade say nothing of a run on turbines alone
     covered_faults = {
         *on_blades,
@@ -228,7 +228,7 @@ def _solved(
             for subject in (turbines if on_turbines else [])
         ]
         if on_turbines == own_turbine.NAMES:
-            on_own += [trials.submit(own_turbine.reading, subject) for subject in turbines]
+            on_own += [trials.submit(own_reading.run, subject) for subject in turbines]
         for run_own in (own_reading.run, own_uncertainty.run) if on_blades == own.NAMES else ():
             on_own += [trials.submit(run_own, subject) for subject in users_blades]
         controls = {control.control: control for future in trial_futures for control in future.result()}

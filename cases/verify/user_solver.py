@@ -26,7 +26,7 @@ from ..judge.verdict import judge, percent, unsigned
 from ..plan.blade import BladeSubject
 from ..plan.column import Column, ColumnError, declined
 from ..plan.request import Execution, Request
-from ..plan.subject import NOT_CHECKED, PropertyChecks
+from ..plan.subject import PropertyChecks
 from ..plan.user_results import UserResults
 from ..solve import published_tables
 from ..solve.reference import references, relevant_effects
@@ -89,7 +89,7 @@ class SolverSubject(BladeSubject):
 
     def property_checks(self, codes: Sequence[Description], limits: Limits) -> PropertyChecks:
         """A function is not asked which model it solves."""
-        return NOT_CHECKED
+        return PropertyChecks()
 
     def error_budget(self) -> None:
         """See ``Subject``."""

@@ -8,9 +8,9 @@ import re
 from xml.etree.ElementTree import Element, SubElement, indent, tostring
 
 from ...cases.judge.quantities import QUANTITIES
-from ...cases.judge.results import Cell, PropertyCheck, Run, described
+from ...cases.judge.results import Cell, Key, PropertyCheck, Run, described
 from ...cases.regression.gate import Comparison
-from ...cases.regression.history import Detection, Key, Point, key
+from ...cases.regression.history import Detection, Point
 from ..shared import summary
 
 FORBIDDEN = re.compile("[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
@@ -36,7 +36,7 @@ def render(run: Run, gate: Comparison | None = None, strict: bool = False) -> by
         suite = SubElement(root, "testsuite", name=_text(case))
         for cell in (c for c in run.cells if c.case == case):
             test = _test(suite, case, _name(cell))
-            _judge(test, cell, findings.get(key(cell), ""))
+            _judge(test, cell, findings.get(cell.key, ""))
         for check in (c for c in run.property_checks if c.case == case):
             _check(_test(suite, case, f"{check.quantity} by {check.code}: {check.part or 'no property'}"), check)
     if gate:

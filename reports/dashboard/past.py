@@ -10,9 +10,9 @@ from math import inf
 from typing import Any
 
 from ...cases.judge.quantities import QUANTITIES, difference, reference
-from ...cases.judge.results import described
+from ...cases.judge.results import Key, described
 from ...cases.regression.gate import MOVED
-from ...cases.regression.history import Entry, History, Key, Point
+from ...cases.regression.history import Entry, History, Point
 from ...cases.regression.properties import CHECKED
 from ..shared.summary import WORST_FIRST
 from .data import verdicts

@@ -67,7 +67,7 @@ def stub(task: Task) -> bytes:
                 blade=task.blade.name, sample=task.sample, properties=properties, omega_rad_s=omega, mode=k + 1, name=""
             )
             for omega in task.speeds
-            for k in range(task.modes)
+            for k in range(task.text.modes)
         ]
     )
 

@@ -6,14 +6,14 @@ from typing import Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ....core.blade import Blade, section_mass, section_stiffness
 from ....core.mechanism.description import inertia
 from ....core.turbine.tower import Support, Tower, check_tower
 from ....core.turbine.turbine import Drivetrain, Teeter, Turbine, shaft_pose
 from .. import readers, toml
-from ..errors import CaseError
+from ..errors import CaseError, located
 from ..readers.matrices import BEAMDYN, in_axes
-from ..readers.openfast import elastodyn_tower
+from ..readers.openfast import elastodyn, elastodyn_tower
 from ..readers.source import Mount, Source
 from ..readers.text import load
 from .schema import DeckData, HubData, MachineData, NacelleData, RotorData, SupportData, Three, TowerData
@@ -129,20 +129,9 @@ def turbine(path: Path, mount: Mount) -> tuple[Turbine, Source, float]:
 def _blade(path: Path, data: RotorData, mount: Mount) -> readers.Reading:
     """The blade; ``mount`` overrides the file's table ``rotor``, which overrides the blade's file."""
 
-    def radians(option: float | None, degrees: float | None) -> float | None:
-        return option if option is not None or degrees is None else float(np.radians(degrees))
-
-    combined = Mount(
-        main=mount.main,
-        length=mount.length if mount.length is not None else data.length,
-        hub_radius=mount.hub_radius if mount.hub_radius is not None else data.hub_radius,
-        precone=radians(mount.precone, data.precone),
-        pitch=radians(mount.pitch, data.pitch),
-        subset=mount.subset,
-        multipliers=mount.multipliers,
-        offsets=mount.offsets,
-    )
-    return readers.reading(path.parent / data.blade, combined)
+    precone, pitch = (None if angle is None else float(np.radians(angle)) for angle in (data.precone, data.pitch))
+    of_file = Mount(length=data.length, hub_radius=data.hub_radius, precone=precone, pitch=pitch)
+    return readers.reading(path.parent / data.blade, elastodyn.complete(mount, of_file))
 
 
 def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ...]]:
@@ -178,7 +167,7 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
         return np.array(columns.get(key, otherwise), float)
 
     rigid = np.full(count, np.inf)
-    try:
+    with located(f"{path}: tower: "):
         beam = Blade(
             name=name,
             stations=np.array(data.stations),
@@ -192,8 +181,6 @@ def _beam(path: Path, name: str, data: TowerData) -> tuple[Blade, tuple[Path, ..
             twist=np.zeros(count),
             tip_mass=top,
         )
-    except BladeError as error:
-        raise CaseError(f"{path}: tower: {error}") from error
     return beam, ()
 
 
@@ -221,10 +208,8 @@ def support(path: Path, key: str, data: SupportData, height: float) -> Support:
     springs = tuple((s.height, np.diag([0.0, s.port, s.downwind, 0.0, 0.0, 0.0])) for s in data.springs)
     mass = None if data.mass is None else in_axes(_six(f"{path}: {key}.mass", data.mass), BEAMDYN)
     out = Support(base, springs, np.array(data.soil) if data.soil else None, mass)
-    try:
+    with located(f"{path}: {key}: ", ValueError):
         check_tower(height, out)
-    except ValueError as error:
-        raise CaseError(f"{path}: {key}: {error}") from error
     return out
 
 

@@ -13,9 +13,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, BladeError, section_mass
+from ....core.blade import SHEAR_Y, SHEAR_Z, Blade, section_mass
 from ....core.blade_checks import body_fault
-from ..errors import CaseError
+from ..errors import CaseError, located
 from .matrices import BEAMDYN, about, bending, in_axes, rigid, rotated, shearing
 from .openfast.elastodyn import complete
 from .source import OPENFAST_AXES, Mount, Reading, Source
@@ -89,7 +89,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
     inertia = rotated(
         section_mass(p["mass_den"], p["flp_iner"], p["edge_iner"]), np.radians(p["str_tw"] - p["tw_iner"])
     )
-    try:
+    with located(f"{text.path}: "):
         blade = Blade(
             name=path.stem,
             stations=eta * float(mounted.length or 0.0),
@@ -102,8 +102,6 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             tip_mass=_tip(main, entries),
             root=np.array(_root(main, entries)),
         )
-    except BladeError as error:
-        raise CaseError(f"{text.path}: {error}") from error
     axes = f"{OPENFAST_AXES}; mass and tension centres off the axis along the section's y"
     factor = value(main, {"rpm_mult": (0, "1"), **entries}, "romg_mult", "rpm_mult")
     speed = value(main, entries, "rot_rpm", "romg") * factor * np.pi / 30

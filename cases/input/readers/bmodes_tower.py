@@ -13,11 +13,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError, section_mass, section_stiffness
+from ....core.blade import Blade, section_mass, section_stiffness
 from ....core.space import spatial as sp
 from ....core.space.inertia import transformed
 from ....core.turbine.tower import Support, Tower, check_tower
-from ..errors import CaseError
+from ..errors import CaseError, located
 from . import bmodes
 from .bmodes import COLUMNS, FACTORS, Entries
 from .matrices import BEAMDYN, in_axes
@@ -68,7 +68,7 @@ def read(path: Path) -> tuple[Tower, Source]:
         raise CaseError(
             f"{main.at(entries['radius'][0])}: radius: the top is not above the base; correct radius, hub_rad, draft"
         )
-    try:
+    with located(f"{rows.text.path}: "):
         beam = Blade(
             name=path.stem,
             stations=fractions(rows, "sec_loc") * height,
@@ -77,8 +77,6 @@ def read(path: Path) -> tuple[Tower, Source]:
             twist=np.zeros(len(rows["sec_loc"])),
             tip_mass=_top(main, entries),
         )
-    except BladeError as error:
-        raise CaseError(f"{rows.text.path}: {error}") from error
     base, mass, base_note = _base(main, entries, draft)
     wires = _wires(main, entries, height)
     notes = [
@@ -95,10 +93,8 @@ def read(path: Path) -> tuple[Tower, Source]:
         heights = ", ".join(f"{h:g} m" for h, _ in wires)
         notes.append(f"guy wires at {heights}: their horizontal stiffness")
     support = Support(base, wires, _soil(main, entries, height), mass)
-    try:
+    with located(f"{path}: ", ValueError):
         check_tower(height, support)
-    except ValueError as error:
-        raise CaseError(f"{path}: {error}") from error
     return Tower(beam, support), Source(NAME, (path, rows.text.path), AXES, tuple(notes), _unused(main, entries))
 
 

@@ -14,13 +14,13 @@ from msgspec import Meta, Struct
 from msgspec.structs import replace as replace_struct
 from numpy.typing import NDArray
 
-from ....core.blade import Blade, BladeError
+from ....core.blade import Blade
 from ....core.blade_checks import MAX_LENGTH
 from ....core.space.spatial import skew
 from .. import files
-from ..errors import CaseError, FilesMissingError
+from ..errors import CaseError, FilesMissingError, located
 from .matrices import UPPER, symmetric
-from .source import BladeFile, Reading, Unused
+from .source import BladeFile, Unused
 
 Array = NDArray[np.float64]
 Vector = tuple[float, float, float]
@@ -77,24 +77,18 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
     ] = None
     tip_mass: Annotated[TipMass | None, Meta(description="a rigid body at the tip")] = None
 
-    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
-        """The blade and the unused quantities of its file, which is searched in ``folder``.
+    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...], BladeFile | None]:
+        """The blade, the unused quantities of its file, which is searched in ``folder``, and the file as read.
+
+        The file is that before the case changes the blade; None if no second reader can read it.
 
         Raises:
             CaseError: if it cannot be read.
         """
-        return self.blade(name, folder), ()
+        return self.blade(name), (), None
 
-    def file_read(self, name: str, folder: Path) -> BladeFile | None:
-        """The blade of its file as read, before the case changes it; None if no second reader can read the file.
-
-        Raises:
-            CaseError: if it cannot be read.
-        """
-        return None
-
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade; implemented by each kind."""
+    def blade(self, name: str) -> Blade:
+        """The blade of a kind that reads no file."""
         raise NotImplementedError
 
     def mounted(self, blade: Blade) -> Blade:
@@ -112,10 +106,8 @@ class Mounted(Struct, frozen=True, forbid_unknown_fields=True, kw_only=True):
             changes["root"] = springs(self.root)
         if self.tip_mass is not None:
             changes["tip_mass"] = self.tip_mass.matrix()
-        try:
+        with located("blade."):
             return replace(blade, **changes)
-        except BladeError as error:
-            raise CaseError(f"blade.{error}") from error
 
 
 class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
@@ -145,8 +137,8 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
     ] = ()
     hub_radius: Annotated[float, Meta(ge=0, le=MAX_LENGTH, description="hub centre to root on the coned axis, m")] = 0.0
 
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade; ``folder`` is not used.
+    def blade(self, name: str) -> Blade:
+        """The blade.
 
         Raises:
             CaseError: if the data are invalid.
@@ -163,7 +155,7 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
             if stiffness[:, i, :].any():
                 raise CaseError(f"blade.rigid: {STRAINS[i]}: its stiffnesses are not zero: remove it or make them zero")
             stiffness[:, i, i] = np.inf
-        try:
+        with located("blade."):
             blade = Blade(
                 name=name,
                 stations=np.array(self.s),
@@ -174,8 +166,6 @@ class Sections(Mounted, frozen=True, tag_field="kind", tag="sections"):
                 curve=np.array(self.curve) if self.curve is not None else np.zeros((0, 3)),
                 kinks=tuple(self.kinks),
             )
-        except BladeError as error:
-            raise CaseError(f"blade.{error}") from error
         return self.mounted(blade)
 
 
@@ -206,29 +196,18 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         bool | None, Meta(description="whether the offset columns of a FAST 7 table are used; default: yes")
     ] = None
 
-    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...]]:
-        """The blade and the unused quantities of its file; the path is relative to ``folder``.
+    def read(self, name: str, folder: Path) -> tuple[Blade, tuple[Unused, ...], BladeFile]:
+        """See ``Mounted``; the path is relative to ``folder``.
 
         Raises:
             FilesMissingError: if the variable of ``files`` is not set, or its folder does not contain the file.
             CaseError: if the reader raises it.
         """
-        file, unstated = self._read(name, folder)
-        blade = Reading(file.blade, file.source, unstated=unstated).mounted(file.path)
-        return self.mounted(replace(blade, name=name)), file.source.unused
-
-    def file_read(self, name: str, folder: Path) -> BladeFile:
-        """See ``Mounted``."""
-        return self._read(name, folder)[0]
-
-    def _read(self, name: str, folder: Path) -> tuple[BladeFile, tuple[str, ...]]:
-        """The file, and the names of the mounting that nothing states."""
         from . import reading  # imports this module
         from .source import Mount
 
-        main = folder / self.main if self.main is not None else None
         mount = Mount(
-            main=main,
+            main=folder / self.main if self.main is not None else None,
             length=self.length,
             hub_radius=self.hub_radius,
             subset=self.subset,
@@ -238,12 +217,9 @@ class FromFile(Mounted, frozen=True, tag_field="kind", tag="file"):
         folder_name = os.environ.get(self.files) if self.files else None
         with files.reading_also(Path(folder_name)) if folder_name else nullcontext():
             path = self._path(name, folder)
-            blade_reading = reading(path, mount)
-        return BladeFile(path, blade_reading.blade, blade_reading.source, mount), blade_reading.unstated
-
-    def blade(self, name: str, folder: Path) -> Blade:
-        """The blade, as ``read``."""
-        return self.read(name, folder)[0]
+            as_read = reading(path, mount)
+        blade = self.mounted(replace(as_read.mounted(path), name=name))
+        return blade, as_read.source.unused, BladeFile(path, as_read.blade, as_read.source, mount)
 
     def _path(self, name: str, folder: Path) -> Path:
         if self.files is None:

@@ -56,7 +56,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
                 f"{path}: length: missing: stations are fractions of the length: give --length and --hub-radius"
             )
         stations = Stations(file=path.name, length=mount.length)
-        blade = stations.blade(path.stem, path.parent)
+        blade, *_ = stations.read(path.stem, path.parent)
         source = Source("Southwell CSV", (path,), AXES, ("shear is rigid, the axis straight", *_rigid(blade)))
         return Reading(_mounted(blade, mount), source)
     data = document(path)
@@ -68,7 +68,7 @@ def read(path: Path, mount: Mount | None = None) -> Reading:
             f"{path}: blade.kind: 'dimensionless': has no metres and seconds: use it in a case with gamma speeds"
         )
     try:
-        blade, unused_values = text.blade.read(text.name, path.parent)
+        blade, unused_values, _ = text.blade.read(text.name, path.parent)
     except CaseError as error:
         raise error if str(error).startswith(str(path.parent)) else CaseError(f"{path}: {error}") from error
     except BladeError as error:

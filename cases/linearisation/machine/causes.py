@@ -6,12 +6,13 @@ more than chance (``diagnosis.ranking``). With aerodynamics nothing is sought: t
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ....core.blade import Blade
-from ...diagnosis.ranking import CHANCE, UNEXPLAINED, UNFITTED, VISIBLE, chance
+from ...diagnosis.ranking import CHANCE, UNEXPLAINED, UNFITTED, VISIBLE, chance, remaining_square
 from ...input.readers.openfast.mode_shapes import Shape
 from .deck import Deck
 
@@ -72,25 +73,25 @@ def ranked(deck: Deck, difference: Array, uncertainty: float, predict: Callable[
     """
     base = predict(deck)
     out: list[Cause] = []
-    fixed = [azimuth_set for azimuth_set in HYPOTHESES if not azimuth_set.fitted]
-    factors = [azimuth_set for azimuth_set in HYPOTHESES if azimuth_set.fitted]
-    for azimuth_set in fixed:
-        change = predict(azimuth_set.alter(deck, 1.0)) - base
+    fixed = [hypothesis for hypothesis in HYPOTHESES if not hypothesis.fitted]
+    factors = [hypothesis for hypothesis in HYPOTHESES if hypothesis.fitted]
+    for hypothesis in fixed:
+        change = predict(hypothesis.alter(deck, 1.0)) - base
         if _visible(change, uncertainty):
-            out.append(_cause(azimuth_set, 1.0, difference, change, uncertainty, len(fixed)))
-    slopes = {azimuth_set: (predict(azimuth_set.alter(deck, STEP)) - base) / np.log(STEP) for azimuth_set in factors}
-    slopes = {azimuth_set: slope for azimuth_set, slope in slopes.items() if _visible(0.1 * slope, uncertainty)}
-    remainders = {azimuth_set: _remainder(difference, slope) for azimuth_set, slope in slopes.items()}
-    for azimuth_set in sorted(slopes, key=remainders.__getitem__)[:FITTED]:
-        slope = slopes[azimuth_set]
+            out.append(_cause(hypothesis, 1.0, difference, change, uncertainty, len(fixed)))
+    slopes = {hypothesis: (predict(hypothesis.alter(deck, STEP)) - base) / np.log(STEP) for hypothesis in factors}
+    slopes = {hypothesis: slope for hypothesis, slope in slopes.items() if _visible(0.1 * slope, uncertainty)}
+    remainders = {hypothesis: remaining_square(difference, slope) for hypothesis, slope in slopes.items()}
+    for hypothesis in sorted(slopes, key=remainders.__getitem__)[:FITTED]:
+        slope = slopes[hypothesis]
         power = float(difference @ slope / (slope @ slope))
         for _ in range(REFINED):  # the secant through the last factor
             if not 1e-6 < abs(power) < np.log(10.0):
                 break
-            change = predict(azimuth_set.alter(deck, float(np.exp(power)))) - base
+            change = predict(hypothesis.alter(deck, float(np.exp(power)))) - base
             if not _visible(change, 0.0):
                 break
-            out.append(_cause(azimuth_set, float(np.exp(power)), difference, change, uncertainty, len(factors)))
+            out.append(_cause(hypothesis, float(np.exp(power)), difference, change, uncertainty, len(factors)))
             slope = change / power
             power = float(difference @ slope / (slope @ slope))
     best: dict[str, Cause] = {}
@@ -99,34 +100,35 @@ def ranked(deck: Deck, difference: Array, uncertainty: float, predict: Callable[
     return tuple(best.values())
 
 
-def _remainder(difference: Array, slope: Array) -> float:
-    """Sum of squares that remains of a difference with the best factor, to the first order."""
-    return float(difference @ difference - (difference @ slope) ** 2 / (slope @ slope))
-
-
 def _visible(change: Array, uncertainty: float) -> bool:
     return bool(np.isfinite(change).all() and np.abs(change).max(initial=0.0) > max(VISIBLE * uncertainty, 1e-9))
 
 
-def _cause(azimuth_set: Hypothesis, factor: float, D: Array, change: Array, uncertainty: float, kinds: int) -> Cause:
-    remainder, size = D - change, float(D @ D)
-    share = float(max(remainder @ remainder, len(D) * uncertainty**2)) / size
+def _cause(hypothesis: Hypothesis, factor: float, D: Array, change: Array, uncertainty: float, kinds: int) -> Cause:
+    rest, size = D - change, float(D @ D)
+    share = float(max(rest @ rest, len(D) * uncertainty**2)) / size
     return Cause(
-        azimuth_set.name,
+        hypothesis.name,
         factor,
-        1.0 - float(remainder @ remainder) / size,
-        float(np.abs(remainder).max()),
-        chance(share, len(D), kinds, 1 if azimuth_set.fitted else 0),
-        azimuth_set.fitted,
+        1.0 - float(rest @ rest) / size,
+        float(np.abs(rest).max()),
+        chance(share, len(D), kinds, 1 if hypothesis.fitted else 0),
+        hypothesis.fitted,
     )
 
 
-def _blade(alter: Callable[[Blade, float], Blade]) -> Alteration:
-    return lambda deck, x: replace(deck, turbine=replace(deck.turbine, blade=alter(deck.turbine.blade, x)))
+def _part(name: str, alter: Callable[[Any, float], Any]) -> Alteration:
+    """A part of the turbine is altered: a beam, an inertia or a number."""
+
+    def altered(deck: Deck, x: float) -> Deck:
+        part = alter(getattr(deck.turbine, name), x)
+        return replace(deck, turbine=replace(deck.turbine, **{name: part}))
+
+    return altered
 
 
-def _tower(alter: Callable[[Blade, float], Blade]) -> Alteration:
-    return lambda deck, x: replace(deck, turbine=replace(deck.turbine, tower=alter(deck.turbine.tower, x)))
+def _times(value: Any, x: float) -> Any:
+    return x * value
 
 
 def _stiffer(*entries: int) -> Callable[[Blade, float], Blade]:
@@ -153,12 +155,12 @@ def _generator(deck: Deck, inertia: float) -> Deck:
 
 
 HYPOTHESES: Sequence[Hypothesis] = (
-    Hypothesis("no gravity", lambda deck, _: replace(deck, turbine=replace(deck.turbine, gravity=0.0))),
-    Hypothesis("no precone", _blade(lambda blade, _: replace(blade, precone=0.0))),
-    Hypothesis("no hub radius", _blade(lambda blade, _: replace(blade, hub_radius=0.0))),
-    Hypothesis("no tip mass", _blade(lambda blade, _: replace(blade, tip_mass=np.zeros((6, 6))))),
-    Hypothesis("no pitch", _blade(lambda blade, _: replace(blade, pitch=0.0))),
-    Hypothesis("no twist", _blade(lambda blade, _: replace(blade, twist=np.zeros_like(blade.twist)))),
+    Hypothesis("no gravity", _part("gravity", lambda *_: 0.0)),
+    Hypothesis("no precone", _part("blade", lambda blade, _: replace(blade, precone=0.0))),
+    Hypothesis("no hub radius", _part("blade", lambda blade, _: replace(blade, hub_radius=0.0))),
+    Hypothesis("no tip mass", _part("blade", lambda blade, _: replace(blade, tip_mass=np.zeros((6, 6))))),
+    Hypothesis("no pitch", _part("blade", lambda blade, _: replace(blade, pitch=0.0))),
+    Hypothesis("no twist", _part("blade", lambda blade, _: replace(blade, twist=np.zeros_like(blade.twist)))),
     Hypothesis(
         "no tuners",
         lambda d, _: replace(d, blade_shapes=_untuned(d.blade_shapes), tower_shapes=_untuned(d.tower_shapes)),
@@ -172,27 +174,21 @@ HYPOTHESES: Sequence[Hypothesis] = (
         "the generator's inertia without the square of the gear ratio",
         lambda deck, _: _generator(deck, deck.turbine.drivetrain.generator / deck.turbine.drivetrain.gear_ratio**2),
     ),
-    Hypothesis("the blades' mass", _blade(_heavier), True),
-    Hypothesis("the blades' flapwise stiffness", _blade(_stiffer(4)), True),
-    Hypothesis("the blades' edgewise stiffness", _blade(_stiffer(5)), True),
-    Hypothesis("the blades' bending stiffness", _blade(_stiffer(4, 5)), True),
-    Hypothesis("the hub radius", _blade(lambda blade, x: replace(blade, hub_radius=x * blade.hub_radius)), True),
-    Hypothesis("the tower's mass", _tower(_heavier), True),
-    Hypothesis("the tower's stiffness", _tower(_stiffer(4, 5)), True),
+    Hypothesis("the blades' mass", _part("blade", _heavier), True),
+    Hypothesis("the blades' flapwise stiffness", _part("blade", _stiffer(4)), True),
+    Hypothesis("the blades' edgewise stiffness", _part("blade", _stiffer(5)), True),
+    Hypothesis("the blades' bending stiffness", _part("blade", _stiffer(4, 5)), True),
     Hypothesis(
-        "the nacelle's mass",
-        lambda deck, x: replace(deck, turbine=replace(deck.turbine, nacelle=x * deck.turbine.nacelle)),
-        True,
+        "the hub radius", _part("blade", lambda blade, x: replace(blade, hub_radius=x * blade.hub_radius)), True
     ),
-    Hypothesis(
-        "the hub's mass", lambda deck, x: replace(deck, turbine=replace(deck.turbine, hub=x * deck.turbine.hub)), True
-    ),
+    Hypothesis("the tower's mass", _part("tower", _heavier), True),
+    Hypothesis("the tower's stiffness", _part("tower", _stiffer(4, 5)), True),
+    Hypothesis("the nacelle's mass", _part("nacelle", _times), True),
+    Hypothesis("the hub's mass", _part("hub", _times), True),
     Hypothesis(
         "the generator's inertia", lambda deck, x: _generator(deck, x * deck.turbine.drivetrain.generator), True
     ),
     Hypothesis("the shaft's stiffness", lambda deck, x: replace(deck, shaft_stiffness=x * deck.shaft_stiffness), True),
-    Hypothesis(
-        "the yaw spring", lambda deck, x: replace(deck, turbine=replace(deck.turbine, yaw=x * deck.turbine.yaw)), True
-    ),
+    Hypothesis("the yaw spring", _part("yaw", _times), True),
 )
 """Alterations of a deck that occur."""

@@ -86,17 +86,21 @@ def _add(deck: Deck, at: Points, state: State, component: int, row: Array) -> No
         row[: 2 * t] = (displacements[0, :, 1:] * at.tower_weight[:, None]).ravel()
     elif state.family in ("generator", "drivetrain", "yaw"):
         row[2 * t] = _shaft_weight(deck) if state.family != "yaw" else 0.0
-    elif state.blade and state.module == "ED" and state.family in deck.blade_shapes:
-        shape = {state.family: deck.blade_shapes[state.family]}
-        displacements, _ = field_of(deck.turbine.blade, shape)(at.blade)
-        _blade(row, t, b, component, displacements[0, :, 1:] * at.blade_weight[:, None])
-    elif state.blade and (node := state.direction) and node[0] == "translational" and node[1] < 2:
-        hats = lagrange(deck.turbine.blade.length, state.element_order, at.blade)
-        if 2 <= node[2] <= len(hats):
-            hat = hats[node[2] - 1] * at.blade_weight
-            # BeamDyn: x downwind, y to the trailing edge, against y here
-            displacements = np.stack([0.0 * hat, hat] if node[1] == 0 else [-hat, 0.0 * hat], axis=-1)
-            _blade(row, t, b, component, displacements)
+    elif state.blade:
+        _blade(row, t, b, component, bent(deck, state, at.blade)[:, 1:] * at.blade_weight[:, None])
+
+
+def bent(deck: Deck, state: State, s: Array) -> Array:
+    """(n, 3) displacements of a blade at arc lengths, in its axes without twist, by a unit of a state."""
+    blade = deck.turbine.blade
+    if state.module == "ED" and state.family in deck.blade_shapes:
+        return field_of(blade, {state.family: deck.blade_shapes[state.family]})(s)[0][0]
+    node, order = state.direction, state.element_order
+    if node and order and node[0] == "translational" and 2 <= node[2] <= order + 1:
+        # BeamDyn: x downwind, y to the trailing edge, z along the blade; here z, −y, x
+        axis, sign = ((2, 1.0), (1, -1.0), (0, 1.0))[node[1]]
+        return sign * element(blade.length, order)(s)[0][3 * (node[2] - 2) + axis]
+    return np.zeros((len(s), 3))
 
 
 def _blade(row: Array, t: int, b: int, component: int, displacements: Array) -> None:
@@ -111,26 +115,17 @@ def _shaft_weight(deck: Deck) -> float:
     return float(np.sqrt(deck.turbine.hub[5, 5] + drive.generator * drive.gear_ratio**2))
 
 
-def lagrange(length: float, order: int | None, s: Array) -> Array:
-    """(p + 1, n) displacement at ``s`` by unit ones of the nodes of a finite element of order p: Lagrange's polynomials.
+def element(length: float, order: int) -> Field:
+    """The field of BeamDyn's finite element of an order: displacements and rotations of its nodes beyond the root.
 
-    The nodes are Gauss, Lobatto and Legendre's. No rows without an order.
+    The nodes are Gauss, Lobatto and Legendre's; Lagrange's polynomials are between them.
     """
-    if order is None or order < 1:
-        return np.zeros((0, len(s)))
     ends = np.polynomial.Legendre.basis(order).deriv().roots()
     nodes = 0.5 * (1.0 + np.concatenate([[-1.0], np.sort(ends.real), [1.0]])) * length
-    rows = [
-        np.prod((s[:, None] - np.delete(nodes, k)) / (nodes[k] - np.delete(nodes, k)), axis=1) for k in range(order + 1)
-    ]
-    return np.array(rows)
-
-
-def element(length: float, order: int) -> Field:
-    """The field of BeamDyn's finite element: displacements and rotations of its nodes beyond the root, interpolated."""
 
     def at(s: Array) -> tuple[Array, Array]:
-        rows = lagrange(length, order, s)[1:]
+        others = [(node, np.delete(nodes, k)) for k, node in enumerate(nodes)][1:]
+        rows = np.array([np.prod((s[:, None] - other) / (node - other), axis=1) for node, other in others])
         displacements = np.einsum("kn,ab->kanb", rows, np.eye(3)).reshape(-1, len(s), 3)
         zeros = np.zeros_like(displacements)
         return np.concatenate([displacements, zeros]), np.concatenate([zeros, displacements])

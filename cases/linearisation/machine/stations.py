@@ -13,7 +13,7 @@ from ..multiblade import states_of_components
 from ..sets import AzimuthSet
 from ..states import State
 from .deck import Deck
-from .fields import element
+from .fields import bent
 
 Array = NDArray[np.float64]
 Complex = NDArray[np.complex128]
@@ -34,7 +34,7 @@ def of_states(deck: Deck, azimuth_set: AzimuthSet) -> Array:
             continue
         if state.blade:
             own = out[k, n * state.blade : n * (state.blade + 1)]
-            own[:, :3] = _bent(deck, state) @ _axes(deck).T
+            own[:, :3] = bent(deck, state, STATIONS * deck.turbine.blade.length) @ _axes(deck).T
             continue
         tower, hub = _carried(deck, state)
         out[k, :n, :3] = tower
@@ -50,20 +50,6 @@ def _axes(deck: Deck) -> Array:
     """(3, 3) axes of a blade without twist in those of its hub."""
     blade = deck.turbine.blade
     return np.asarray(sp.rotation(1, np.array(-blade.precone)) @ sp.rotation(0, np.array(blade.pitch)))
-
-
-def _bent(deck: Deck, state: State) -> Array:
-    """(21, 3) displacements of a blade in its axes without twist."""
-    blade = deck.turbine.blade
-    s = STATIONS * blade.length
-    if state.module == "ED" and state.family in deck.blade_shapes:
-        return field_of(blade, {state.family: deck.blade_shapes[state.family]})(s)[0][0]
-    node, order = state.direction, state.element_order
-    if node and order and node[0] == "translational" and 2 <= node[2] <= order + 1:
-        # BeamDyn: x downwind, y to the trailing edge, z along the blade; here z, −y, x
-        axis, sign = ((2, 1.0), (1, -1.0), (0, 1.0))[node[1]]
-        return sign * element(blade.length, order)(s)[0][3 * (node[2] - 2) + axis]
-    return np.zeros((len(s), 3))
 
 
 def _carried(deck: Deck, state: State) -> tuple[Array, Array]:

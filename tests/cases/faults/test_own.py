@@ -67,8 +67,8 @@ def test_witnesses_share_nothing_and_pass_every_mode_at_the_highest_speed() -> N
 
 
 def test_a_blade_of_the_package_is_not_the_users() -> None:
-    assert own.is_users(users())
-    assert not own.is_users(blades(library.load("park-cantilever"))[0])
+    assert users().users
+    assert not blades(library.load("park-cantilever"))[0].users
 
 
 def test_without_an_independent_code_nothing_is_claimed() -> None:

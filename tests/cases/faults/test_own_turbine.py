@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from southwell.cases.faults import own_turbine, table
+from southwell.cases.faults import own, own_reading, own_turbine, table
 from southwell.cases.plan.request import Request
 from southwell.cases.plan.subjects import subjects
 from southwell.cases.plan.turbine import TurbineSubject
@@ -29,8 +29,8 @@ def subject(tmp_path: Path) -> TurbineSubject:
 
 def test_a_users_turbine_has_its_own_faults_in_place_of_those_of_the_packages_blades(subject: TurbineSubject) -> None:
     assert subject.users
-    assert own_turbine.chosen(table.FAST) == own_turbine.NAMES
-    assert own_turbine.chosen(("turbine: tilt", "density")) == ("turbine: tilt",)
+    assert own.chosen(table.FAST, own_turbine.NAMES) == own_turbine.NAMES
+    assert own.chosen(("turbine: tilt", "density"), own_turbine.NAMES) == ("turbine: tilt",)
     (packaged,) = subjects(Request(("nrel-5mw-turbine",)), print)
     assert isinstance(packaged, TurbineSubject)
     assert not packaged.users
@@ -69,8 +69,8 @@ def test_every_fault_makes_a_code_fail_that_does_not_have_it(
 @pytest.mark.slow
 def test_the_second_reading_detects_mistakes_of_reading(subject: TurbineSubject) -> None:
     pytest.importorskip("weio")
-    controls = {c.control: c for c in own_turbine.reading(subject)}
-    assert {name for name, _, _ in own_turbine.READER} < set(controls)
+    controls = {c.control: c for c in own_reading.run(subject)}
+    assert {fault.name for fault in own_reading.TURBINE} < set(controls)
     assert not [c.control for c in controls.values() if c.missed]
     assert "rise of the shaft downwind" in " ".join(controls["reader: tilt's sign"].detected_by)
     assert "generator's inertia" in controls["reader: gear ratio"].detected_by[0]

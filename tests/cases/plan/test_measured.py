@@ -21,9 +21,10 @@ from southwell.cases.plan import user_results
 from southwell.cases.plan.blade import blades
 from southwell.cases.plan.user_results import Defaults, UserResults
 from southwell.cases.solve.reference import references
-from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.reports.cli import app as cli
+
+from ...support import matrix_runs
 
 HEAD = "speed [rad/s], measured [rad/s], mode, uncertainty [%]\n"
 
@@ -55,7 +56,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> Run:
     text = f"{HEAD}10, {1.01 * EDGEWISE:.6f}, edgewise 1, 2\n10, {0.9 * FLAPWISE:.6f}, flapwise 1, 2\n10, 900, axial 1, 2\n"
     files = [read(folder, text), read(folder, f"{HEAD}10, 71.1, flapwise 2, 2\n", name="second")]
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(blades(park((0.0, 12.0))), [], executor, user_results=files, parts=False)
+        return matrix_runs.solve(blades(park((0.0, 12.0))), [], executor, user_results=files, parts=False)
 
 
 def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(compared: Run) -> None:

@@ -11,7 +11,7 @@ import pytest
 from southwell.cases.input import library
 from southwell.cases.input.errors import CaseError
 from southwell.cases.judge.cells import Head
-from southwell.cases.judge.convergence import Compared, RefinedMode
+from southwell.cases.judge.convergence import RefinedMode
 from southwell.cases.judge.pairing import Pair
 from southwell.cases.judge.reference import Converged, Reference
 from southwell.cases.judge.results import Cell, Run
@@ -21,13 +21,15 @@ from southwell.cases.judge.witnesses import witnesses
 from southwell.cases.plan import names, user_columns, user_results
 from southwell.cases.plan.blade import blades
 from southwell.cases.plan.subject import speeds_of_blades
-from southwell.cases.verify import matrix, measurements
+from southwell.cases.verify import measurements
 from southwell.core.modes import Modes
 from southwell.core.participation import numbered
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
 from southwell.references.protocol.interface import BladeAdapter
 from southwell.reports.cli import app as cli
+
+from ...support import matrix_runs
 
 HEAD = "speed [rad/s], frequency [rad/s], mode\n"
 
@@ -73,7 +75,7 @@ def judged(tmp_path_factory: pytest.TempPathFactory) -> Run:
     }
     files = [read(tmp_path_factory.mktemp("file"), text, name) for name, text in texts.items()]
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(blades(park()), ["yoo-shin"], executor, user_results=files, parts=False)
+        return matrix_runs.solve(blades(park()), ["yoo-shin"], executor, user_results=files, parts=False)
 
 
 def of(run: Run, name: str = "rig") -> list[Cell]:
@@ -237,7 +239,7 @@ NOT_OF_THE_RUN = [
 @pytest.mark.parametrize(("case", "text", "words"), NOT_OF_THE_RUN)
 def test_what_is_not_of_the_run_is_bad_input(tmp_path: Path, case: str, text: str, words: str) -> None:
     with pytest.raises(CaseError) as caught:
-        user_results.check([read(tmp_path, text)], speeds_of_blades(blades(library.load(case))), ["yoo-shin"])
+        user_results.check([read(tmp_path, text)], speeds_of_blades(blades(library.load(case))))
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
 
@@ -268,17 +270,17 @@ def test_a_file_cannot_have_the_name_of_a_code(tmp_path: Path) -> None:
 
 def test_two_files_cannot_have_one_name(tmp_path: Path) -> None:
     content = read(tmp_path, HEAD + "10, 11.7, edgewise 1\n")
-    with pytest.raises(CaseError, match="another file has this name"):
-        user_results.check([content, content], speeds_of_blades(blades(park())), ["yoo-shin"])
+    with pytest.raises(CaseError, match=r"code: 'rig' is given twice, by --add .* and by --add "):
+        names.unique(blades(park()), describe(["yoo-shin"], []), [content, content])
 
 
 def hand_made(names: tuple[str, ...], frequencies: tuple[float, ...]) -> Reference:
     """Core's modes at one speed, known by name and frequency only."""
     values = np.array(frequencies)
     spectrum = of_blade(Modes(1.0, values, np.zeros((len(names), 21, 4), complex), 10), np.zeros((21, 4, 4)))
-    compared = Compared(replace(spectrum, labels=numbered(names)), tuple(range(len(names))))
+    labelled, indices = replace(spectrum, labels=numbered(names)), tuple(range(len(names)))
     modes = tuple(RefinedMode(Estimate(f, 1e-9), Pair(k, 1.0), ()) for k, f in enumerate(frequencies))
-    return Reference(Converged(compared, modes, names), frequencies, (1.0,) * len(names), ((),) * len(names))
+    return Reference(Converged(labelled, indices, modes, names), frequencies, (1.0,) * len(names), ((),) * len(names))
 
 
 @pytest.mark.parametrize(

@@ -14,7 +14,6 @@ from southwell.cases.judge.results import BudgetEntry, Run
 from southwell.cases.plan.blade import blades
 from southwell.cases.solve import error_budget
 from southwell.cases.store import results_file
-from southwell.cases.verify import matrix
 from southwell.core.blade import uniform_blade
 from southwell.core.effects import Effects
 from southwell.core.element.discretize import Mass
@@ -25,6 +24,7 @@ from southwell.references.theories import exact_beam, yoo_shin
 from southwell.reports.shared.units import RAD_S
 from southwell.reports.verification import error_budget as reported
 
+from ...support import matrix_runs
 from ...support.straight_blades import Y, family, park
 
 CASE = "park-cantilever"
@@ -136,7 +136,7 @@ def run() -> Run:
     case = library.load(CASE)
     single_speed = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(blades(single_speed), ["yoo-shin", "exact-beam"], executor)
+        return matrix_runs.solve(blades(single_speed), ["yoo-shin", "exact-beam"], executor)
 
 
 @pytest.mark.slow

@@ -12,6 +12,7 @@ from southwell.cases.input.readers.hawc2 import drivetrain, orientation, rigid
 from southwell.cases.input.readers.hawc2 import turbine as hawc2
 from southwell.cases.input.readers.openfast import elastodyn_tower
 from southwell.cases.input.readers.openfast import turbine as reader
+from southwell.cases.input.readers.source import Mount
 from southwell.cases.plan import turbine as plan
 from southwell.cases.solve import turbine_weights
 from southwell.cases.solve.turbine_reading import read_again
@@ -31,7 +32,7 @@ def wrong(path: Path) -> set[str]:
 def test_both_readings_agree(tmp_path: Path) -> None:
     path = deck(tmp_path)
     reading = reader.read(path)
-    rows = plan.subject(path, reading.turbine, reading.source, (2.0,), rpm=False).property_checks((), Limits()).rows
+    rows = plan.subject(path, reading, (2.0,), False, Mount()).property_checks((), Limits()).rows
     assert {row.verdict for row in rows} == {"pass"}
     assert {"rise of the shaft downwind", "flapwise stiffness", "precone"} <= {row.part for row in rows}
 
@@ -102,7 +103,7 @@ HEAVY = {
 def htc_rows(path: Path) -> dict[str, str]:
     """Verdict of each quantity, and of what core's turbine weighs, by the second reading of an htc."""
     read = hawc2.read(path)
-    subject = plan.subject(path, read.turbine, read.source, (2.0,), rpm=False)
+    subject = plan.subject(path, read, (2.0,), False, Mount())
     rows, weighed = subject.second_reading(path)
     assert weighed
     rows += turbine_weights.of_solver("small", read.turbine, weighed)

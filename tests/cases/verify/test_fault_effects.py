@@ -26,7 +26,7 @@ def first(modes: Modes, column: int = Y) -> float:
 
 
 def made(fault: str, omega: float = OMEGA, how: tuple[Mass, Measure] = fault_effects.CONSISTENT) -> Modes:
-    modes = fault_effects.core(fault, park(), omega, 15, 10, how)
+    modes = fault_effects.solved(fault, park(), omega, 10, how)
     assert modes is not None
     return modes
 

@@ -24,7 +24,6 @@ from southwell.cases.plan.blade import blades
 from southwell.cases.solve import core_solver
 from southwell.cases.solve.copies import copied
 from southwell.cases.solve.reference import references
-from southwell.cases.verify import matrix
 from southwell.core.effects import ALL_EFFECTS
 from southwell.core.element.discretize import Mass
 from southwell.core.element.measures import Measure
@@ -38,7 +37,7 @@ from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification.case_tables import comparison
 
 from ...reports.cli.test_cli import southwell
-from ...support import samples
+from ...support import matrix_runs, samples
 
 PARK = "park-cantilever"
 
@@ -55,7 +54,7 @@ def run() -> Run:
     case = library.load(PARK)
     single_speed = replace(case, variants=(replace(case.variants[0], speeds=np.array([10.0])),))
     with ThreadPoolExecutor(1) as executor:
-        return matrix.run(
+        return matrix_runs.solve(
             blades(single_speed), [f"southwell.tests.support.fooling:{c}" for c in FOOLING], executor, parts=False
         )
 
@@ -138,7 +137,7 @@ def test_a_wide_target_is_coarse_and_no_evidence() -> None:
         variants=(replace(case.variants[0], speeds=np.array([10.0])),),
     )
     with ThreadPoolExecutor(1) as executor:
-        result = matrix.run(blades(wide), ["southwell.tests.support.fooling:FAR"], executor, parts=False)
+        result = matrix_runs.solve(blades(wide), ["southwell.tests.support.fooling:FAR"], executor, parts=False)
     cells = [c for c in result.cells if c.code == "far"]
     assert {c.verdict for c in cells} == {"coarse"}
     assert all(abs(c.difference or 0.0) > 0.3 for c in cells)

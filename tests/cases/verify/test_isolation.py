@@ -20,6 +20,7 @@ from southwell.reports.cli import app as cli
 from southwell.reports.shared import summary
 from southwell.reports.shared.statuses import INCOMPLETE
 
+from ...support import matrix_runs
 from ...support.misdeeds import TABLE
 
 CASE = """
@@ -68,7 +69,7 @@ def written(key: str, folder: Path) -> str:
 
 def run(case: Case, *codes: str) -> Run:
     with ThreadPoolExecutor(2) as executor:
-        return matrix.run(blades(case), codes, executor, parts=False)
+        return matrix_runs.solve(blades(case), codes, executor, parts=False)
 
 
 def of(run: Run, code: str) -> list[Cell]:

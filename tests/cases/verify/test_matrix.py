@@ -13,10 +13,11 @@ from southwell.cases.judge.results import Cell, Run
 from southwell.cases.plan.blade import blades
 from southwell.cases.plan.blade_columns import PAPER
 from southwell.cases.store import results_file
-from southwell.cases.verify import matrix
 from southwell.cases.verify.matrix import Progress
 from southwell.reports.shared import summary
 from southwell.reports.shared.statuses import FAILED
+
+from ...support import matrix_runs
 
 CASE = """
 name = "rest"
@@ -59,7 +60,7 @@ def case(tmp_path: Path):
 
 def solve(case: Case, *codes: str, timeout: float = 60.0, parts: bool = False) -> Run:
     with ThreadPoolExecutor(2) as executor:
-        return matrix.run(blades(case), codes, executor, seconds=timeout, parts=parts)
+        return matrix_runs.solve(blades(case), codes, executor, seconds=timeout, parts=parts)
 
 
 @pytest.fixture(scope="module")
@@ -191,7 +192,9 @@ def test_what_was_solved_before_a_failure_still_counts(case) -> None:
 def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
     steps: list[Progress] = []
     with ThreadPoolExecutor(1) as executor:
-        run = matrix.run(blades(case()), [f"{ANALYTIC}GOOD", f"{ANALYTIC}UNABLE"], executor, steps.append, parts=False)
+        run = matrix_runs.solve(
+            blades(case()), [f"{ANALYTIC}GOOD", f"{ANALYTIC}UNABLE"], executor, steps.append, parts=False
+        )
     assert [p.done for p in steps] == [0, 1, 2, 3, 4, 5]
     assert {p.total for p in steps} == {5}
     assert steps[0].running == ("rest × Southwell",)
@@ -201,7 +204,7 @@ def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
 @pytest.mark.slow
 def test_processes_and_threads_agree(case, at_rest: Run) -> None:
     with ProcessPoolExecutor(1) as executor:
-        far = matrix.run(blades(case()), [f"{ANALYTIC}GOOD"], executor, parts=False)
+        far = matrix_runs.solve(blades(case()), [f"{ANALYTIC}GOOD"], executor, parts=False)
     codes = {cell.code for cell in far.cells}
     assert "good" in codes
     assert [(c.code, c.mode, c.value, c.verdict) for c in far.cells] == [
@@ -213,7 +216,7 @@ def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     """Stretching resonates with the rotation where γ = α π/2: past it nothing holds the beam together."""
     fast, other = case("[0, 1600]"), case("[0]", "rest", "beside")
     with ThreadPoolExecutor(2) as executor:
-        run = matrix.run(blades(fast, other), [f"{ANALYTIC}GOOD", f"{ANALYTIC}ABSENT"], executor, parts=False)
+        run = matrix_runs.solve(blades(fast, other), [f"{ANALYTIC}GOOD", f"{ANALYTIC}ABSENT"], executor, parts=False)
     failures = [c for c in run.cells if c.omega == 1600]
     assert {(c.code, c.verdict, c.mode) for c in failures} == {
         (PAPER, "fail", 0),

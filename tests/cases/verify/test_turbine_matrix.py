@@ -9,6 +9,7 @@ import pytest
 
 from southwell.cases import data
 from southwell.cases.input.readers.openfast import turbine as reader
+from southwell.cases.input.readers.source import Mount
 from southwell.cases.judge.results import Cell
 from southwell.cases.plan import turbine as plan
 from southwell.cases.plan.blade import BladeSubject
@@ -33,7 +34,7 @@ from southwell.tests.support.turbine_decks import deck
 def subject(tmp_path: Path) -> TurbineSubject:
     path = deck(tmp_path)
     reading = reader.read(path)
-    return plan.subject(path, reading.turbine, reading.source, (2.0,), rpm=False)
+    return plan.subject(path, reading, (2.0,), False, Mount())
 
 
 def cells(

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import CubicSpline
 
-from .....core.blade import Blade, BladeError
+from .....core.blade import Blade
 from .....core.blade_checks import follows
-from ...errors import CaseError
+from ...errors import CaseError, located
 from ..matrices import BEAMDYN, between, fault, in_axes, mass_fault
 from ..source import OPENFAST_AXES, Mount, Reading, Source, Unused, unused
 from ..text import (
@@ -252,7 +252,7 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
             "check that both are of the same blade"
         )
     at = [between(arc, m, s) for m in (stiffness, mass)]
-    try:
+    with located(f"{path}: "):
         return Blade(
             name=name,
             stations=s,
@@ -264,5 +264,3 @@ def assemble(name: str, path: Path, axis: Axis, eta: Array, stiffness: Array, ma
             precone=mount.precone or 0.0,
             pitch=mount.pitch or 0.0,
         )
-    except BladeError as error:
-        raise CaseError(f"{path}: {error}") from error

@@ -15,8 +15,8 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from .....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ...errors import CaseError
+from .....core.blade import Blade, section_mass, section_stiffness
+from ...errors import CaseError, located
 from ..matrices import about
 from ..source import OPENFAST_AXES, Mount, Reading, Source
 from ..text import Text, fractions, keys, load, path_named, value
@@ -163,7 +163,7 @@ def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) ->
     offset_columns = {name: sections[name] for name in fast7_offsets.COLUMNS if offsets and name in sections.columns}
     axis = fast7_offsets.line(eta * mounted.length, offset_columns, twist)
     mass = section_mass(by_mass * sections["BMassDen"], flap_inertia, edge_inertia)
-    try:
+    with located(f"{text.path}: "):
         blade = Blade(
             name=text.path.stem,
             stations=axis.s,
@@ -181,8 +181,6 @@ def _blade(text: Text, mount: Mount, hub_data: Hub | None, main: Path | None) ->
             pitch=mounted.pitch or 0.0,
             tip_mass=tip,
         )
-    except BladeError as error:
-        raise CaseError(f"{text.path}: {error}") from error
     used_offsets = [name for name, values in offset_columns.items() if values.any()]
     axes = f"{OPENFAST_AXES}; {'the axis is the elastic axis' if used_offsets else 'all centres on the pitch axis'}"
     unused_values = (

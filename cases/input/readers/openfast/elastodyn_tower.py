@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .....core.blade import Blade, BladeError, section_mass, section_stiffness
-from ...errors import CaseError
+from .....core.blade import Blade, section_mass, section_stiffness
+from ...errors import CaseError, located
 from ..source import Mount, Reading, Source
 from ..text import Text, fractions, keys, load, path_named, value
 from . import elastodyn, elastodyn_table, elastodyn_unused
@@ -89,7 +89,7 @@ def beam(text: Text, height: float) -> tuple[Blade, tuple[str, ...]]:
     sections, factors = elastodyn_table.read(text, LAYOUT)
     sections.positive(*COLUMNS[1:])
     mass, fore_aft, side_side = factors.values()
-    try:
+    with located(f"{text.path}: "):
         tower = Blade(
             name=text.path.stem,
             stations=fractions(sections, "HtFract") * height,
@@ -99,8 +99,6 @@ def beam(text: Text, height: float) -> tuple[Blade, tuple[str, ...]]:
             mass=section_mass(mass * sections["TMassDen"]),
             twist=np.zeros(len(sections.lines)),
         )
-    except BladeError as error:
-        raise CaseError(f"{text.path}: {error}") from error
     factors_text = ", ".join(f"{name} = {factor:g}" for name, factor in factors.items())
     rigid = (
         "axial, torsional and shear stiffness and moments of inertia of the tower's sections: not used by this format"
