@@ -159,9 +159,3 @@ def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: st
     assert (CODE.unsupported(blade) or "").startswith(reason)
     with pytest.raises(CodeError, match=reason):
         CODE.solve(blade, 0.0, 5, 4)
-
-
-def test_too_many_elements_are_an_error() -> None:
-    finest = CODE.max_elements or 0
-    with pytest.raises(CodeError, match=f"elements: {finest + 1}"):
-        CODE.solve(PARK, 10.0, finest + 1, 4)

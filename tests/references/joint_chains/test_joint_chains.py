@@ -1,4 +1,4 @@
-"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
+"""Joint chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -41,9 +41,14 @@ both = pytest.mark.parametrize(
     ],
 )
 
+chains = pytest.mark.parametrize(
+    "code",
+    [*both.args[1], pytest.param(pinocchio_chain.CODE, id="pinocchio", marks=needs("pinocchio", pinocchio_chain.CODE))],
+)
+
 
 @pytest.mark.slow
-@both
+@chains
 @pytest.mark.parametrize(
     ("blade", "omega"),
     [
@@ -98,27 +103,11 @@ def test_every_stage_agrees_with_pinocchio(make: Callable[[Mesh], ChainModel], r
         np.testing.assert_allclose(actual, expected, atol=rtol * np.abs(expected).max(), rtol=0)
 
 
-@both
-def test_the_same_call_gives_the_same_answer_and_prints_nothing(code: Any, capfd: pytest.CaptureFixture[str]) -> None:
-    first = code.solve(tapered(), 2.0, 8, 4)
-    code.solve(PARK, 10.0, 5, 4)
-    second = code.solve(tapered(), 2.0, 8, 4)
-    np.testing.assert_array_equal(first.frequencies, second.frequencies)
-    np.testing.assert_array_equal(first.shapes, second.shapes)
-    assert capfd.readouterr().out == ""
-
-
-@both
+@chains
 @pytest.mark.parametrize(("gamma", "reason"), [(100.0, "no stable steady state"), (1e4, "no (stable )?steady state")])
 def test_no_steady_state_at_high_speed(code: Any, gamma: float, reason: str) -> None:
     with pytest.raises(CodeError, match=reason):
         code.solve(yoo_shin(0.1), gamma, 6, 4)
-
-
-@both
-def test_too_many_elements_are_an_error(code: Any) -> None:
-    with pytest.raises(CodeError, match="elements: 81"):
-        code.solve(PARK, 10.0, 81, 4)
 
 
 @both

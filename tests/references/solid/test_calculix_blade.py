@@ -91,13 +91,6 @@ def test_torsional_modes_are_left_out() -> None:
     np.testing.assert_allclose(kept.frequencies[: (~twists).sum()], all_.frequencies[~twists], rtol=1e-6)
 
 
-@needs_ccx
-def test_the_same_call_gives_the_same_answer() -> None:
-    first, second = (CODE.solve(PARK, 5.0, 10, 4) for _ in range(2))
-    np.testing.assert_array_equal(first.frequencies, second.frequencies)
-    np.testing.assert_array_equal(first.shapes, second.shapes)
-
-
 @pytest.mark.parametrize(
     ("blade", "reason"),
     [
