@@ -315,12 +315,6 @@ def test_redundant_constraints_are_named(capsys, tmp_path: Path) -> None:
     assert {"rotation x", "rotation y", "z"} == {part.split(": ")[1] for part in line[3:].split(", ")}
 
 
-def test_bad_input_at_the_command_is_status_two(capsys, tmp_path: Path) -> None:
-    status, _, err = run(capsys, "mechanism", str(tmp_path / "none.toml"))
-    assert (status, err.count("\n")) == (2, 1)
-    assert "no such file" in err
-
-
 @pytest.mark.parametrize(
     ("arguments", "phrase"),
     [

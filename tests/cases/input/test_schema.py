@@ -106,18 +106,23 @@ def test_variants_repeat_only_what_differs(write) -> None:
         ("0:12.1:6", [0, 6, 12, 12.1]),
         ("7.5", [7.5]),
         ("2:2:1", [2]),
+        ("0, 5 ,10", [0, 5, 10]),
+        ("0:4:2,10", [0, 2, 4, 10]),
     ],
 )
-def test_ranges_include_both_ends(text: str, values: list[float]) -> None:
+def test_speed_ranges_include_both_ends(text: str, values: list[float]) -> None:
     np.testing.assert_allclose(speed_range(text), values, atol=1e-12)
 
 
 @pytest.mark.parametrize(
     "text",
-    ["", "0:30", "fast", "0:30:0", "0:30:-5", "30:0:5", "-5:5:1", "0:inf:1", "nan:1:1", "0:1e6:1e-3"],
+    [
+        *("", "0:30", "fast", "0:30:0", "0:30:-5", "30:0:5", "-5:5:1", "0:inf:1", "nan:1:1", "0:1e6:1e-3"),
+        *("0,", "0,x", "0,-1", "5,0", "0,0"),
+    ],
 )
-def test_impossible_ranges_are_refused(text: str) -> None:
-    with pytest.raises(ValueError, match="0:30:5"):
+def test_impossible_speeds_are_refused(text: str) -> None:
+    with pytest.raises(ValueError, match=r"0:30:5|ascending"):
         speed_range(text)
 
 

@@ -10,7 +10,6 @@ import pytest
 from southwell.cases.campbell.required import required_margin
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.schema import speed_range
 from southwell.tests.support.blade_files import assert_same
 
 from ...reports.cli.test_cli import southwell
@@ -122,20 +121,6 @@ def test_bmodes_says_its_speed(capsys: pytest.CaptureFixture[str]) -> None:
     assert status == 0
     (row,) = json.loads(output)
     assert row["omega_rad_s"] == pytest.approx(10 * np.pi / 30)
-
-
-@pytest.mark.parametrize(
-    ("text", "speeds"),
-    [("0,5,10", [0, 5, 10]), ("0, 5 ,10", [0, 5, 10]), ("0:4:2,10", [0, 2, 4, 10]), ("12", [12])],
-)
-def test_lists_of_speeds(text: str, speeds: list[float]) -> None:
-    np.testing.assert_array_equal(speed_range(text), speeds)
-
-
-@pytest.mark.parametrize("text", ["5,0", "0,0", "0,", "0,x", "0,-1"])
-def test_bad_lists_of_speeds(text: str) -> None:
-    with pytest.raises(ValueError, match=r"ascending|neither|needs"):
-        speed_range(text)
 
 
 @pytest.mark.parametrize(

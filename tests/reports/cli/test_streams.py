@@ -49,13 +49,6 @@ def test_a_run_without_home_or_temporary_folder_in_an_unusual_path(tmp_path: Pat
     assert (process.returncode, (folder / "results.jsonl").exists()) == (0, True), process.stderr
 
 
-@pytest.mark.slow
-def test_a_folder_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
-    done = shell(f"southwell verify rotating-cable --out '{tmp_path / 'file' / 'out'}'")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
-
-
 def test_a_defect_of_the_program_has_a_status_of_its_own(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -162,13 +162,6 @@ def test_bad_input_is_one_line_and_status_2(
     assert message in err
 
 
-def test_a_folder_that_cannot_be_written(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
-    (tmp_path / "file").write_text("")
-    status, _, err = run(capsys, str(DATA / "bmodes.bmi"), "-o", str(tmp_path / "file"))
-    assert status == 2
-    assert "cannot be written" in err
-
-
 def test_modes_and_campbell_take_blade_files(capsys: pytest.CaptureFixture[str]) -> None:
     blade = str(DATA / "bmodes.bmi")
     with pytest.raises(SystemExit) as ending:
