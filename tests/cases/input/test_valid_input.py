@@ -47,14 +47,14 @@ SECTION = "sec 1   0.00   0.00    0.0  -12.0"
         ("hawc2.htc", SECTION, "sec 1   0.00   0.00    3.6e-12  -12.0", ("hawc2_st.dat",), "hawc2.htc"),
     ],
 )
-def test_a_root_that_is_rounded(
+def test_a_rounded_root_is_accepted(
     tmp_path: Path, file: str, old: str, new: str, others: tuple[str, ...], first: str
 ) -> None:
     changed(tmp_path, file, old, new, *others)
     assert_same(readers.read(tmp_path / first), readers.read(DATA / first), 1e-12)
 
 
-def test_a_root_of_hawc2s_stations_that_is_rounded(tmp_path: Path) -> None:
+def test_a_rounded_root_of_hawc2s_stations_is_accepted(tmp_path: Path) -> None:
     shutil.copy(DATA / "hawc2.htc", tmp_path)
     lines = (DATA / "hawc2_st.dat").read_text().splitlines()
     rows = [k for k, line in enumerate(lines) if line.startswith("0.000000e+00")]
@@ -65,7 +65,7 @@ def test_a_root_of_hawc2s_stations_that_is_rounded(tmp_path: Path) -> None:
     assert_same(readers.read(tmp_path / "hawc2.htc"), readers.read(DATA / "hawc2.htc"), 1e-12)
 
 
-def test_a_root_that_is_elsewhere_is_still_refused(tmp_path: Path) -> None:
+def test_a_root_away_from_zero_is_refused(tmp_path: Path) -> None:
     path = changed(tmp_path, "beamdyn_main.dat", POINT, "0.0 0.0 1.0E-6 12.0", "beamdyn_blade.dat")
     with pytest.raises(CaseError, match="kp_zr: 1e-06: the first key point is the root"):
         readers.read(path)
@@ -98,7 +98,7 @@ def test_windio_1_with_coupled_zero_shear_is_refused(tmp_path: Path) -> None:
         readers.read(written(tmp_path / "b.yaml", data))
 
 
-def test_yaml_whose_anchor_is_used_again(tmp_path: Path) -> None:
+def test_yaml_may_reuse_an_anchor(tmp_path: Path) -> None:
     path = written(tmp_path / "b.yaml", samples()[1])
     plain = readers.read(path)
     second = "one: &x [1, 2]\ntwo: *x\nthree: &x [3, 4]\nfour: *x\n"
@@ -116,7 +116,7 @@ def test_yaml_with_an_alias_of_nothing_is_refused(tmp_path: Path) -> None:
         readers.read(tmp_path / "b.yaml")
 
 
-def test_bmodes_says_its_speed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_rotor_speed_of_a_bmodes_file_is_used(capsys: pytest.CaptureFixture[str]) -> None:
     status, output, _ = southwell(f"modes {DATA / 'bmodes.bmi'} --modes 1 --elements 5 --json", capsys)
     assert status == 0
     (row,) = json.loads(output)

@@ -58,7 +58,7 @@ def compared(tmp_path_factory: pytest.TempPathFactory) -> Run:
         return matrix.run(blades(park((0.0, 12.0))), [], executor, user_results=files, parts=False)
 
 
-def test_a_rig_is_compared_at_its_own_speed_and_decides_nothing(compared: Run) -> None:
+def test_a_measurement_is_compared_at_its_own_speed_and_not_judged(compared: Run) -> None:
     near, far, absent = (c for c in compared.cells if c.code == "rig")
     assert [(c.verdict, c.role, c.omega, c.shares) for c in (near, far)] == [("measured", "measured", 10.0, "")] * 2
     assert near.difference == pytest.approx(0.01, abs=1e-5)
@@ -154,7 +154,7 @@ def test_an_uncertainty_in_the_frequencys_unit(tmp_path: Path) -> None:
         ),
     ],
 )
-def test_a_row_that_cannot_be_is_told_with_its_remedy(tmp_path: Path, text: str, words: str) -> None:
+def test_an_invalid_row_is_reported_with_its_remedy(tmp_path: Path, text: str, words: str) -> None:
     with pytest.raises(CaseError) as caught:
         read(tmp_path, text)
     message = str(caught.value)
@@ -177,7 +177,7 @@ def test_a_row_that_cannot_be_is_told_with_its_remedy(tmp_path: Path, text: str,
         ),
     ],
 )
-def test_what_cannot_be_measured_is_bad_input(
+def test_measurements_outside_the_run_are_bad_input(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], text: str, options: tuple[str, ...], words: str
 ) -> None:
     path = tmp_path / "rig.csv"

@@ -79,7 +79,7 @@ def test_a_right_reader_is_confirmed(deck: Path, tmp_path: Path) -> None:
     assert results_file.read(tmp_path / "results.jsonl").property_checks == checks.property_checks
 
 
-def test_exchanged_stiffnesses_end_a_run_with_status_1_by_name(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exchanged_stiffnesses_are_named_and_give_status_1(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     exchange(monkeypatch)
     checks = checked(deck)
     assert summary.status(checks) == FAILED
@@ -91,7 +91,7 @@ def test_exchanged_stiffnesses_end_a_run_with_status_1_by_name(deck: Path, monke
 
 
 @pytest.mark.slow
-def test_every_cell_passes_with_exchanged_stiffnesses(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exchanged_stiffnesses_alone_fail_no_cell(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The whole command: no code sees the exchange, because all of them take the blade from the reader."""
     exchange(monkeypatch)
     execution = Execution(threads=True, fresh=True)
@@ -147,7 +147,7 @@ def test_a_wrong_sampling_of_core_is_named_for_core_alone(tmp_path: Path, monkey
     )
 
 
-def test_a_code_that_reports_nothing_says_so(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_code_without_fingerprint_is_reported(deck: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(tasks, "fingerprints", lambda *_: [None])
     checks = checked(deck, ["exudyn-tree"])
     rows = [c for c in checks.property_checks if c.code == "exudyn-tree"]

@@ -69,7 +69,7 @@ def test_a_column_that_solves_nothing_starts_no_process(kept: Store) -> None:
         stored_tasks.submit(replace(column, solves=True), [1.0], [None])
 
 
-def test_what_answers_depend_on_besides_the_question_is_part_of_the_key(kept: Store) -> None:
+def test_versions_of_codes_are_part_of_the_key(kept: Store) -> None:
     for also in (("code 1.0",), ("code 1.1",), ("code 1.0",)):
         Stored(Serial(), kept, also=also).submit(double, 2.0)
     assert CALLS == [2.0, 2.0]
@@ -92,7 +92,7 @@ def column(**changed: Any) -> Column:
     return replace(failing_column, **changed)
 
 
-def test_every_part_of_the_key_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_every_part_of_the_question_changes_the_key(monkeypatch: pytest.MonkeyPatch) -> None:
     """Question, speed, version, effects, sources of this package, machine, and the kernel that is asked for."""
     head = column().head
     keys = {
@@ -123,7 +123,7 @@ def test_codes_from_elsewhere_and_of_no_known_version_are_asked_again() -> None:
     assert not column(head=replace(column().head, version="")).storable
 
 
-def test_failures_are_not_kept(kept: Store) -> None:
+def test_failures_are_not_stored(kept: Store) -> None:
     for _ in range(2):
         Stored(Serial(), kept).submit(column(), [1.0], [None]).result()
     assert CALLS == ["code", "code"]
@@ -140,7 +140,7 @@ def test_a_damaged_answer_is_computed_again(kept: Store, tmp_path: Path) -> None
 
 
 @pytest.mark.slow
-def test_verify_takes_the_second_time_what_it_computed_the_first(tmp_path: Path) -> None:
+def test_a_second_run_takes_its_answers_from_the_store(tmp_path: Path) -> None:
     """And says how many, and from when; with --fresh it computes again. Results are the same but for times."""
     (tmp_path / "case.toml").write_text(killing.BEAM)
     line = ["verify", "case.toml", "--codes", "exact-beam", "--faults", "none", "--workers", "1", "--out"]

@@ -114,7 +114,7 @@ def test_a_spurious_or_damped_mode_makes_an_answer_inconclusive(code: str, reaso
 
 @pytest.mark.slow
 @pytest.mark.parametrize("code", ["wide", "wide-once"])
-def test_a_code_cannot_declare_itself_unsure_and_be_believed(code: str) -> None:
+def test_a_large_declared_uncertainty_is_inconclusive(code: str) -> None:
     assert {c.verdict for c in of(code)} == {"inconclusive"}
 
 
@@ -234,7 +234,7 @@ def test_a_frequency_of_zero_is_a_failure() -> None:
 @pytest.mark.parametrize(
     ("code", "phrase"), [("blows", "unsupported(): RuntimeError"), ("no-version", "version(): OSError")]
 )
-def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, phrase: str) -> None:
+def test_an_exception_in_an_adapter_affects_its_own_cells_only(code: str, phrase: str) -> None:
     cells = of(code)
     assert [c.verdict for c in cells] == ["fail"]
     assert phrase in cells[0].reason
@@ -243,7 +243,7 @@ def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, phrase: str) 
 
 
 @pytest.mark.slow
-def test_nothing_compared_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_run_without_comparison_has_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     command = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
     status, out, _ = southwell(command, capsys)
     assert status == 1

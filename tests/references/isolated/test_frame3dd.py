@@ -47,7 +47,7 @@ def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
     ],
     ids=["cantilever", "fast", "tip mass", "tapered, twisted", "pitched"],
 )
-def test_it_extrapolates_to_core(blade: Blade, omega: float) -> None:
+def test_two_refinements_extrapolate_to_the_solvers_frequencies(blade: Blade, omega: float) -> None:
     """Second order, from 40 and 60 elements; without spin softening the first would be 31 % higher."""
     coarse, fine = (CODE.solve(blade, omega, n, 4).frequencies for n in (40, 60))
     np.testing.assert_allclose(fine + (fine - coarse) * 0.8, core(blade, omega, 4), rtol=1.5e-4)

@@ -52,7 +52,7 @@ def ask(**changed: Any) -> list[Answer]:
     return answers(**(given | changed))
 
 
-def test_only_what_is_missing_is_asked_for(requests: Requests) -> None:
+def test_only_missing_answers_are_requested(requests: Requests) -> None:
     ask(runs=RUNS[:1])
     more = ask(runs=[RUNS[1], RUNS[0], RUNS[2]])
     assert requests == [[[0.0, 10, 3]], [[2.0, 10, 3], [0.5, 20, 3]]]
@@ -76,7 +76,7 @@ def test_only_what_is_missing_is_asked_for(requests: Requests) -> None:
         {"version": "1.1"},
     ],
 )
-def test_every_part_of_the_question_counts(requests: Requests, changed: dict[str, Any]) -> None:
+def test_every_part_of_the_question_changes_the_key(requests: Requests, changed: dict[str, Any]) -> None:
     request = {"runs": [RUNS[1]]}
     ask(**request)
     ask(**request)
@@ -92,7 +92,7 @@ def test_every_part_of_the_question_counts(requests: Requests, changed: dict[str
         lambda m: m.setattr(platform, "machine", lambda: "another machine"),
     ],
 )
-def test_source_and_machine_count(
+def test_sources_and_machine_change_the_key(
     requests: Requests, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch], None]
 ) -> None:
     ask()
@@ -104,7 +104,9 @@ def test_source_and_machine_count(
 @pytest.mark.parametrize(
     "changed", [{"limits": replace(REUSE, reuse=False)}, {"version": ""}, {"name": "elsewhere:CODE"}]
 )
-def test_what_is_never_stored(requests: Requests, changed: dict[str, Any]) -> None:
+def test_answers_without_version_or_of_other_packages_are_not_stored(
+    requests: Requests, changed: dict[str, Any]
+) -> None:
     """Answers when reuse is not wanted, of a code of unknown version, and of a code that is not part of this package."""
     ask(**changed)
     ask(**changed)
@@ -143,7 +145,7 @@ def test_the_time_of_a_stored_answer_is_not_reported_as_measured(requests: Reque
     assert (first[0].seconds, np.isnan(second[0].seconds)) == (0.25, True)
 
 
-def test_an_array_is_made_once_for_each_question(requests: Requests, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_array_is_computed_once_for_each_question(requests: Requests, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[float] = []
 
     def array(x: float, label: str = "array") -> Any:

@@ -167,7 +167,7 @@ def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: st
 
 
 @pytest.mark.slow
-def test_why_mass_centres_off_the_axis_are_declined(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pybmodes_is_wrong_for_mass_centres_off_the_axis(monkeypatch: pytest.MonkeyPatch) -> None:
     """Core agrees with the expected value of the reproducer, an independent method; pyBModes is off by 1.5 %.
 
     Both are without Coriolis terms, for a beam with its mass 0.05 m off the axis, at 60 rpm. Only in pyBModes the
@@ -264,7 +264,7 @@ ROUND = uniform_blade("round", 1.0, 0.0, EA=1e6, GJ=1e3, EI_y=1.0, EI_z=1.0, mas
         ),  # a coarse mesh would be too fine to be solved directly
     ],
 )
-def test_double_frequencies_are_expected(blade: Blade, omega: float, doubled: bool) -> None:
+def test_blades_with_double_frequencies_are_recognised(blade: Blade, omega: float, doubled: bool) -> None:
     assert pybmodes_beam._doubled(blade, omega, 6) == doubled
 
 

@@ -39,7 +39,7 @@ def frequencies(blade: Blade) -> np.ndarray:
         ("alone.dat", "elastodyn"),
     ],
 )
-def test_what_is_written_has_the_same_frequencies(
+def test_written_files_have_the_same_frequencies(
     tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str, to: str
 ) -> None:
     source = DATA / file
@@ -117,9 +117,7 @@ def test_beamdyns_damping_is_carried_over(tmp_path: Path, capsys: pytest.Capture
     assert mu.values == (1e-3, 1e-3, 1e-3, 0.0014, 0.0022, 0.0022)
 
 
-def test_a_curve_between_stations_that_beamdyn_does_not_hold_is_told(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_a_curve_that_beamdyn_cannot_hold_is_reported(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     """The stations of an Akima curve lie elsewhere on BeamDyn's natural spline; the message says by how much."""
     out = tmp_path / "out.dat"
     status, output, _ = southwell(f"convert {DATA / 'hawc2.htc'} {out} --to beamdyn", capsys)
@@ -134,7 +132,7 @@ def test_a_curve_between_stations_that_beamdyn_does_not_hold_is_told(
     np.testing.assert_allclose(frequencies(after), frequencies(before), rtol=2e-4)
 
 
-def test_what_a_format_does_not_keep_is_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_properties_that_a_format_loses_are_listed(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, output, _ = southwell(f"convert {DATA / 'beamdyn_main.dat'} {tmp_path / 'out.toml'} --hub-radius 0", capsys)
     assert status == 0
     assert "not used: mu1 … mu6 (largest 0.0022 s, beamdyn_blade.dat)" in output

@@ -29,7 +29,9 @@ def shell(line: str, **variables: str) -> subprocess.CompletedProcess[str]:
         ("southwell --help > /dev/full", {}, 2, 1),
     ],
 )
-def test_whatever_becomes_of_the_output(line: str, variables: dict[str, str], status: int, errors: int) -> None:
+def test_closed_full_or_ascii_output_has_the_right_status(
+    line: str, variables: dict[str, str], status: int, errors: int
+) -> None:
     done = shell(line, **variables)
     assert (done.returncode, done.stderr.count("\n")) == (status, errors), done.stderr
 

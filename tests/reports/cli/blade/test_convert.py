@@ -24,9 +24,7 @@ def test_any_blade_in_toml(tmp_path: Path, capsys: pytest.CaptureFixture[str], f
     assert_same(readers.read(out), readers.read(DATA / file, Mount(hub_radius=1.5) if hub else None))
 
 
-def test_for_beamdyn_two_files_and_what_the_main_file_must_say(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
+def test_beamdyn_has_two_files_and_entries_of_the_main_file(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     out = tmp_path / "it.dat"
     line = f"convert {DATA / 'beamdyn_main.dat'} {out} --to beamdyn --hub-radius 2 --precone -2.5 --pitch 3"
     status, output, _ = southwell(line, capsys)

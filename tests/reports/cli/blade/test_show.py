@@ -43,7 +43,7 @@ def wide(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("COLUMNS", "200")
 
 
-def test_a_uniform_beam_with_a_tip_mass(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
+def test_mass_and_moments_of_a_uniform_beam_with_tip_mass(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     """1.2 kg/m over 6 m from 0.3 m, and 2 kg at 6.3 m."""
     path = tmp_path / "beam.toml"
     path.write_text(BEAM)
@@ -65,7 +65,7 @@ def test_a_uniform_beam_with_a_tip_mass(capsys: pytest.CaptureFixture[str], tmp_
     )
 
 
-def test_nrel_5mw_says_how_it_was_read(capsys: pytest.CaptureFixture[str]) -> None:
+def test_conventions_of_the_reader_are_printed_for_nrel_5mw(capsys: pytest.CaptureFixture[str]) -> None:
     blade = str(real("nrel5mw/NRELOffshrBsline5MW_Blade.dat"))
     status, out, _ = run(capsys, blade, "--length", "61.5", "--hub-radius", "1.5", "--precone", "-2.5")
     assert status == 0
