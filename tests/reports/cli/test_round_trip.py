@@ -16,43 +16,11 @@ from ...cases.input.readers.openfast.test_readers_elastodyn import real
 from .test_cli import southwell
 
 DATA = Path(__file__).parents[2] / "data" / "blades"
-OPTIONS = {"hub_radius": 2.0, "precone": np.radians(-2.5), "pitch": np.radians(-4.0)}
-ON_HUB = "--hub-radius 2 --precone -2.5 --pitch 4 --pitch-convention openfast"
 
 
 def frequencies(blade: Blade) -> np.ndarray:
     """At 5 and 15 rpm, rad/s."""
     return np.array([modes(blade, omega, elements=20, modes=8).frequencies for omega in (np.pi / 6, np.pi / 2)])
-
-
-@pytest.mark.parametrize(
-    ("file", "to"),
-    [
-        ("elastodyn_blade.dat", "toml"),
-        ("fast7_main.fst", "toml"),
-        ("beamdyn_main.dat", "toml"),
-        ("beamdyn_old_main.dat", "toml"),
-        ("bmodes.bmi", "toml"),
-        ("hawc2.htc", "toml"),
-        ("beamdyn_main.dat", "beamdyn"),
-        ("beamdyn_old_main.dat", "beamdyn"),
-        ("alone.dat", "elastodyn"),
-    ],
-)
-def test_written_files_have_the_same_frequencies(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], file: str, to: str
-) -> None:
-    source = DATA / file
-    length = ""
-    if file == "alone.dat":  # the table without its main file, which has a tip mass
-        source, length = tmp_path / file, " --length 50"
-        source.write_bytes((DATA / "elastodyn_blade.dat").read_bytes())
-    out = tmp_path / f"out.{'toml' if to == 'toml' else 'dat'}"
-    status, _, err = southwell(f"convert {source} {out} --to {to} {ON_HUB}{length}", capsys)
-    assert (status, err) == (0, "")
-    given = Mount(**OPTIONS, length=50.0 if length else None)
-    second = readers.read(out) if to == "toml" else readers.read(out, given)
-    np.testing.assert_allclose(frequencies(second), frequencies(readers.read(source, given)), rtol=1e-6)
 
 
 @pytest.mark.slow

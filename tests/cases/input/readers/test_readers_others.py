@@ -207,13 +207,6 @@ def test_bmodes_decks_are_read_as_pybmodes_reads_them() -> None:
         np.testing.assert_allclose(sections(reading.blade).GJ, expected.tor_stff, rtol=1e-12)
 
 
-def test_toml_written_and_read_again_is_the_same(tmp_path: Path) -> None:
-    for k, path in enumerate((BMI, HTC, DATA / "beamdyn_main.dat", DATA / "elastodyn_main.dat")):
-        blade = readers.read(path)
-        southwell_toml.write(blade, tmp_path / f"{k}.toml")
-        assert_same(blade, readers.read(tmp_path / f"{k}.toml"))
-
-
 BEAM = """name = "b"
 [blade]
 kind = "beam"

@@ -11,7 +11,6 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.openfast import beamdyn, elastodyn
-from southwell.cases.writers import beamdyn as beamdyn_write
 from southwell.core.blade import straight
 from southwell.core.element.sections import frames
 from southwell.tests.support.blade_files import assert_same, real
@@ -94,19 +93,6 @@ def test_elastodyns_main_file_says_how_it_is_mounted(tmp_path: Path) -> None:
     hub.write_text((DATA / "elastodyn_main.dat").read_text())
     with pytest.raises(CaseError, match=r"length: 50 m by the main file or --length, 40\.\d+ m by the key points"):
         beamdyn.read(tmp_path / MAIN.name, Mount(main=hub))
-
-
-@pytest.mark.parametrize("path", [MAIN, OLD])
-def test_a_written_file_gives_the_same_blade(tmp_path: Path, path: Path) -> None:
-    blade = beamdyn.read(path, Mount(hub_radius=1.5, precone=-0.04, pitch=0.1)).blade
-    mount = beamdyn_write.write(blade, tmp_path / path.name)
-    assert_same(blade, beamdyn.read(tmp_path / path.name, mount).blade, 1e-13)
-
-
-def test_rigid_strains_are_not_written(tmp_path: Path) -> None:
-    blade = elastodyn.read(DATA / "elastodyn_blade.dat", Mount(length=50.0)).blade
-    with pytest.raises(CaseError, match="BeamDyn cannot represent rigid strains"):
-        beamdyn_write.write(blade, tmp_path / "x.dat")
 
 
 def test_nrel_5mw_is_the_blade_of_its_elastodyn_file() -> None:

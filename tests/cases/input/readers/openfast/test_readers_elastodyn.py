@@ -10,8 +10,6 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.openfast import elastodyn
-from southwell.cases.writers import elastodyn as elastodyn_write
-from southwell.core.blade import uniform_blade
 from southwell.core.sampling import mass_at
 from southwell.tests.support.blade_files import assert_same, real
 
@@ -81,19 +79,6 @@ def test_other_files_in_the_folder_are_ignored(tmp_path: Path) -> None:
     (tmp_path / "b.dat").write_bytes(b"")
     (tmp_path / "c.dat").write_text('52 TipRad\n2 HubRad\n"other.dat" BldFile1\n')
     assert readers.read(tmp_path / BLADE.name).hub_radius == 2.0
-
-
-def test_a_written_file_gives_the_same_blade(tmp_path: Path) -> None:
-    blade = elastodyn.read(BLADE, MOUNT).blade
-    path = tmp_path / BLADE.name
-    assert_same(blade, elastodyn.read(path, elastodyn_write.write(blade, path)).blade)
-
-
-def test_properties_that_the_format_cannot_hold_are_refused(tmp_path: Path) -> None:
-    beam = uniform_blade("beam", 6.0, 0.3, EA=2.8e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=1.2)
-    with pytest.raises(CaseError, match="ElastoDyn cannot represent finite stiffness in stretch"):
-        elastodyn_write.write(beam, tmp_path / "x.dat")
-    assert not (tmp_path / "x.dat").exists()
 
 
 def test_fast_7_columns_give_stretch_torsion_and_moments_of_inertia(tmp_path: Path) -> None:
