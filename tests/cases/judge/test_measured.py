@@ -9,19 +9,6 @@ from southwell.cases.judge.measured import COVERAGE, Validation, statement
 SIZE = st.floats(0.0, 10.0)
 
 
-def test_the_uncertainties_add_as_squares() -> None:
-    v = Validation(simulated=1.10, measured=1.00, numerical=0.02, inputs=0.03, data=0.06)
-    assert v.uncertainty == pytest.approx(0.07)
-    assert v.error == pytest.approx(0.10)
-    assert v.visible == 0.0
-    assert statement(v) == "model error not visible at u_val = 7.0 %"
-
-
-def test_an_error_beyond_the_uncertainty_is_said_with_its_least_size() -> None:
-    v = Validation(simulated=0.93, measured=1.00, numerical=0.0, inputs=0.01, data=0.0)
-    assert statement(v) == "model error visible (at least 5.0 %)"
-
-
 @given(st.floats(0.1, 10.0), st.floats(0.1, 10.0), SIZE, SIZE, SIZE, SIZE)
 def test_more_uncertainty_never_makes_an_error_more_visible(
     s: float, d: float, n: float, i: float, u: float, more: float

@@ -27,7 +27,6 @@ from southwell.core.participation import numbered
 from southwell.references.protocol import registry
 from southwell.references.protocol.description import describe
 from southwell.references.protocol.interface import BladeAdapter
-from southwell.reports.cli import app as cli
 
 HEAD = "speed [rad/s], frequency [rad/s], mode\n"
 
@@ -240,18 +239,6 @@ def test_rows_of_other_blades_or_speeds_are_bad_input(tmp_path: Path, case: str,
         user_results.check([read(tmp_path, text)], speeds_of_blades(blades(library.load(case))), ["yoo-shin"])
     assert words in str(caught.value)
     assert "\n" not in str(caught.value)
-
-
-@pytest.mark.slow
-def test_bad_input_overwrites_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    path, (case, text, words) = tmp_path / "results.csv", NOT_OF_THE_RUN[0]
-    path.write_text(text)
-    with pytest.raises(SystemExit) as exit_info:
-        cli.main(["verify", case, "--codes", "yoo-shin", "--add", f"rig={path}", "--out", str(tmp_path / "out")])
-    assert exit_info.value.code == 2
-    (line,) = capsys.readouterr().err.splitlines()
-    assert words in line
-    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("add", ["results.csv", "=results.csv", "rig="])

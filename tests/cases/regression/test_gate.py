@@ -130,14 +130,6 @@ def test_a_removed_case_fails_only_if_it_had_answers() -> None:
     assert len(installed.new) == 3
 
 
-def test_an_answer_replaced_by_a_measurement_fails_and_a_removed_measurement_does_not() -> None:
-    rig = replace(CELL, code="rig", role="measured", verdict="measured")
-    assert compared(BEFORE, replace(BEFORE, cells=(*BEFORE.cells, rig))).passed(strict=True)
-    comparison = compared(replace(BEFORE, cells=at(BEFORE.cells, 0, verdict="measured")))
-    assert [g.point.mode for g in comparison.gone] == [1]
-    assert not comparison.passed()
-
-
 def test_a_seeded_fault_no_longer_detected_fails() -> None:
     (control,) = BEFORE.controls
     other = replace(BEFORE, controls=(replace(control, detected_by=("another",)),))

@@ -2,7 +2,6 @@
 
 import json
 import platform
-import sqlite3
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -124,18 +123,6 @@ def test_failures_are_not_stored(requests: Requests, monkeypatch: pytest.MonkeyP
         assert [a.kind for a in ask() if isinstance(a, Failure)] == ["refused", "timed out", "timed out"]
     assert all(isinstance(a, Modes) for a in ask())
     assert requests == [[list(run) for run in RUNS]]
-
-
-def test_a_damaged_answer_is_computed_again(requests: Requests, tmp_path: Path) -> None:
-    before = ask()
-    base = sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None)
-    base.execute("update answers set value = replace(value, '.', '')")
-    after = ask()
-    assert len(requests) == 2
-    for a, b in zip(before, after, strict=True):
-        assert isinstance(a, Modes)
-        assert isinstance(b, Modes)
-        np.testing.assert_array_equal(a.frequencies, b.frequencies)
 
 
 def test_the_time_of_a_stored_answer_is_not_reported_as_measured(requests: Requests) -> None:
