@@ -19,14 +19,9 @@ from southwell.references.joint_chains import mujoco as mujoco_chain
 from southwell.references.joint_chains import pinocchio as pinocchio_chain
 from southwell.references.joint_chains.joint_chain import ChainModel
 from southwell.references.protocol.interface import CodeError
-from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
+from southwell.tests.support.beams import PARK, TIP_MASS, curved, tapered, yoo_shin
 
 Array = NDArray[Any]
-
-TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
-TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
-TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
-TIP_MASS[[3, 5], [3, 5]] += 10.0
 
 
 def needs(module: str, code: Any) -> pytest.MarkDecorator:

@@ -16,7 +16,7 @@ from southwell.cases.input.readers.hawc2 import blade as hawc2
 from southwell.cases.input.readers.openfast import elastodyn
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import modes
-from southwell.tests.support.blade_files import assert_same, real
+from southwell.tests.support.blade_files import BEAM, assert_same, real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 ST, HTC, BMI, SECTIONS = (DATA / n for n in ("hawc2_st.dat", "hawc2.htc", "bmodes.bmi", "bmodes_sections.dat"))
@@ -205,21 +205,6 @@ def test_bmodes_decks_are_read_as_pybmodes_reads_them() -> None:
         np.testing.assert_allclose(reading.blade.mass[:, 0, 0], expected.mass_den, rtol=1e-14)
         np.testing.assert_allclose(np.degrees(reading.blade.twist), -expected.str_tw, atol=1e-12)
         np.testing.assert_allclose(sections(reading.blade).GJ, expected.tor_stff, rtol=1e-12)
-
-
-BEAM = """name = "b"
-[blade]
-kind = "beam"
-length = 6.0
-hub_radius = 0.3
-E = 7e10
-G = 2.7e10
-density = 3000.0
-A = 4e-4
-I_y = 2e-7
-I_z = 2e-7
-J = 4e-7
-"""
 
 
 @pytest.mark.parametrize(

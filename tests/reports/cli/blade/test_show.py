@@ -10,24 +10,13 @@ import pytest
 from southwell.core.blade import uniform_blade
 from southwell.reports.campbell import span
 from southwell.reports.cli import app as cli
+from southwell.tests.support import blade_files
 from southwell.tests.support.blade_files import real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
-BEAM = """name = "beam"
-[blade]
-kind = "beam"
-length = 6.0
-hub_radius = 0.3
-E = 7e10
-G = 2.7e10
-density = 3000.0
-A = 4e-4
-I_y = 2e-7
-I_z = 2e-7
-J = 4e-7
-rotary_inertia = false
-root = { flap = 0.0, lag = 1e5 }
-tip_mass = { mass = 2.0 }
+BEAM = f"""{blade_files.BEAM}rotary_inertia = false
+root = {{ flap = 0.0, lag = 1e5 }}
+tip_mass = {{ mass = 2.0 }}
 """
 
 
