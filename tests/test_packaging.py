@@ -186,6 +186,6 @@ def test_versions_and_entry_point_are_those_of_the_project() -> None:
     assert callable(getattr(__import__(module, fromlist=[function]), function))
 
 
-def test_what_is_tested_is_this_checkout() -> None:
+def test_the_tested_package_is_this_checkout() -> None:
     """Another checkout beside this one, in a folder named ``southwell``, must not be taken for it."""
     assert Path(str(southwell.__file__)).resolve().parent == ROOT

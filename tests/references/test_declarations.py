@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 
 from southwell.references.protocol import registry
-from southwell.references.protocol.interface import ADAPTERS, CORE, REFERENCE_LINE, BladeAdapter
+from southwell.references.protocol.interface import ADAPTERS, CORE, REFERENCE_LINE, BladeAdapter, CodeError
 
 from ..support.beams import PARK
 from ..support.codes import BLADE_CODES
@@ -99,6 +99,13 @@ def test_scikit_fem_assembles_the_matrices(name: str, monkeypatch: pytest.Monkey
 def test_refinements_are_within_the_codes_own_limits(name: str) -> None:
     code = registry.code(name)
     assert code.levels[-1] <= (code.finest or code.levels[-1]) <= (code.max_elements or np.inf)
+
+
+@pytest.mark.parametrize("name", [name for name in BLADE_CODES if registry.code(name).max_elements])
+def test_a_mesh_above_the_limit_of_a_code_is_an_error(name: str) -> None:
+    code = registry.code(name)
+    with pytest.raises(CodeError, match=f"elements: {code.max_elements + 1}"):
+        code.solve(PARK, 10.0, code.max_elements + 1, 4)
 
 
 @pytest.mark.slow

@@ -91,7 +91,7 @@ def test_evidence_gives_the_computed_value(name: str, series: Series, datum: Dat
     assert any(f"{value:.{digits}f}" in datum.evidence for digits in (5, 6))
 
 
-def test_core_prints_what_hodges_and_rutkowski_print() -> None:
+def test_the_solver_rounds_to_the_digits_of_hodges_and_rutkowski() -> None:
     """Core is independent of the code that checks the digits; to one unit of the last digit, with 1601 stations."""
     (series,) = published.load("hodges_rutkowski1981").series
     solution = mesh_modes(tapered_beams.blade(series.height_taper, 0.0), 12.0, 50, 8, effects=series.effects)
@@ -193,6 +193,6 @@ def test_an_unknown_table_is_an_error_that_suggests_the_nearest() -> None:
         published.load("xyz")
 
 
-def test_a_table_in_a_file_goes_by_its_stem() -> None:
+def test_a_table_in_a_file_is_named_by_its_stem() -> None:
     assert published.label("tables/rig.toml") == "rig"
     assert published.label("park2010") == "park2010"

@@ -61,7 +61,7 @@ def bending_only(beam: Blade) -> Blade:
         *(("free generator", code) for code in CODES),
     ],
 )
-def test_the_limit_of_two_refinements_is_cores(name: str, code: TurbineAdapter) -> None:
+def test_two_refinements_extrapolate_to_the_solvers_frequencies(name: str, code: TurbineAdapter) -> None:
     turbine = replace(
         TURBINES[name], tower=bending_only(small().tower), blade=bending_only(small().blade), gravity=30.0
     )
@@ -72,7 +72,7 @@ def test_the_limit_of_two_refinements_is_cores(name: str, code: TurbineAdapter) 
 
 
 @pytest.mark.parametrize("code", CODES, ids=lambda code: code.name)
-def test_shapes_are_those_of_core(code: TurbineAdapter) -> None:
+def test_shapes_are_those_of_the_solver(code: TurbineAdapter) -> None:
     turbine = TURBINES["locked generator"]
     core = turbine_modes(machine(turbine), OMEGA, 6)
     answer = code.turbine_modes(turbine, OMEGA, 6, 6)

@@ -24,6 +24,12 @@ EXACT_EDGEWISE = np.array([11.710953, 70.419355, 189.81994])
 EXACT_FLAPWISE = np.array([15.400199, 71.126584, 190.083784])
 """Full extensible beam at 10 rad/s, rad/s: two spectral solutions that agree to 1e-6."""
 
+TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
+TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
+TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
+TIP_MASS[[3, 5], [3, 5]] += 10.0
+"""Inertia (6, 6) of a body of 40 kg beside the tip."""
+
 
 def yoo_shin(hub_ratio: float, alpha: float = 70.0) -> Blade:
     """Yoo and Shin's dimensionless beam: length, mass and EI one, slenderness α, no rotary inertia."""

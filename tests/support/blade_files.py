@@ -11,6 +11,21 @@ import yaml
 
 from southwell.core.blade import Blade
 
+BEAM = """name = "beam"
+[blade]
+kind = "beam"
+length = 6.0
+hub_radius = 0.3
+E = 7e10
+G = 2.7e10
+density = 3000.0
+A = 4e-4
+I_y = 2e-7
+I_z = 2e-7
+J = 4e-7
+"""
+"""A uniform beam in Southwell's own format; a table may follow."""
+
 BLADES = Path(__file__).parents[1] / "data" / "blades"
 FIELDS = ("stations", "stiffness", "mass", "twist", "curve", "hub_radius", "precone", "pitch", "tip_mass", "root")
 

@@ -22,20 +22,15 @@ class Fooling(BladeAdapter):
     alter: Callable[[Modes], Modes] = lambda modes: modes
     levels: tuple[int, ...] = EXACT.levels
     bracket: bool = False
-    raises: str = ""
     order: int = EXACT.order
     title: str = "Exact beam, altered"
     effects: Effects = EXACT.effects
     hint: str = ""
 
     def version(self) -> str | None:
-        if self.raises == "version":
-            raise OSError("no such binary")
         return "1.0"
 
     def unsupported(self, blade: Blade) -> str | None:
-        if self.raises == "unsupported":
-            raise RuntimeError("licence server\nnot reached")
         return EXACT.unsupported(blade)
 
     def modes(self, blade: Blade, omega: float, elements: int, count: int) -> Modes:
@@ -118,8 +113,6 @@ WIDE = Fooling("wide", _wide)
 WIDE_ONCE = Fooling("wide-once", _wide, levels=(10,))
 BRACKET = Fooling("bracket", _wide, bracket=True)
 ZERO = Fooling("zero", lambda m: replace(m, frequencies=np.append(0.0, m.frequencies[1:])))
-BLOWS = Fooling("blows", raises="unsupported")
-NO_VERSION = Fooling("no-version", raises="version")
 
 
 def _ghosts(modes: Modes) -> Modes:

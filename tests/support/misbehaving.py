@@ -1,7 +1,6 @@
-"""Codes that go wrong in every way a foreign code can, for the worker to survive; found by import path."""
+"""Codes that answer, crash, hang, refuse, return no numbers or are not installed; found by import path."""
 
 import ctypes
-import os
 import subprocess
 import sys
 import time
@@ -32,23 +31,8 @@ def hang() -> None:
     child.wait()
 
 
-def chatter() -> None:
-    print('{"modes": {}}', flush=True)
-    os.write(1, b"from C\n")
-    subprocess.run([sys.executable, "-c", "print('from a child')"], check=True)
-
-
 def give_up() -> None:
     raise CodeError("no steady state\nat this speed")
-
-
-def blunder() -> None:
-    raise ZeroDivisionError("division by zero")
-
-
-def leave() -> None:
-    sys.stderr.write("library: licence not found\n")
-    os._exit(3)
 
 
 @dataclass(frozen=True)
@@ -87,20 +71,9 @@ def not_a_number(omega: float, elements: int, count: int) -> Modes:
     return Modes(omega, modes.frequencies * np.nan, modes.shapes, elements)
 
 
-def descending(omega: float, elements: int, count: int) -> Modes:
-    modes = answer(omega, elements, count)
-    return Modes(omega, modes.frequencies[::-1].copy(), modes.shapes, elements)
-
-
 SEGFAULT = Misbehaving(segfault)
-ABORT = Misbehaving(os.abort)
-LEAVE = Misbehaving(leave)
 HANG = Misbehaving(hang)
-CHATTER = Misbehaving(chatter)
 GIVE_UP = Misbehaving(give_up)
-BLUNDER = Misbehaving(blunder)
 NOT_A_NUMBER = Misbehaving(nothing, answer=not_a_number)
-DESCENDING = Misbehaving(nothing, answer=descending)
 ABSENT = Misbehaving(nothing, installed=False)
 WELL_BEHAVED = Misbehaving(nothing)
-NOT_A_CODE = 42

@@ -89,6 +89,7 @@ ENDS = {
 
 HANGS = {
     "hang": "time.sleep(600)",
+    "hang_with_child": "subprocess.Popen([sys.executable, '-c', 'import time; time.sleep(600)']); time.sleep(600)",
     "hang_deaf": "[signal.signal(n, signal.SIG_IGN) for n in (1, 2, 3, 15)]; time.sleep(600)",
     "stops_itself": "os.kill(os.getpid(), signal.SIGSTOP)",
     "floods_stdout": "exec('while True: os.write(1, bytes(65536))')",

@@ -184,12 +184,12 @@ def test_an_operating_range_from_rest_and_one_of_a_single_speed() -> None:
         ({"speeds": (1.0, 3.0), "operating": (0.5, 2.0)}, "not within the speeds"),
     ],
 )
-def test_what_cannot_be_asked_is_told(changes: dict[str, object], phrase: str) -> None:
+def test_invalid_requests_are_reported(changes: dict[str, object], phrase: str) -> None:
     with pytest.raises(CaseError, match=phrase):
         diagram(**changes)
 
 
-def test_a_mode_that_veers_is_named_by_what_it_was_and_what_it_becomes(veering: Campbell) -> None:
+def test_a_veering_mode_has_its_names_before_and_after(veering: Campbell) -> None:
     labels = veering.labels
     assert [labels[t] for t in range(3)] == ["flapwise 1 → edgewise", "edgewise 1 → flapwise", "flapwise 2"]
     assert labels.names == ("flapwise 1", "edgewise 1", "flapwise 2")
@@ -199,7 +199,7 @@ def test_a_mode_that_veers_is_named_by_what_it_was_and_what_it_becomes(veering: 
     assert labels.over(0, 5.0, 5.9) == "flapwise 1 (edgewise)"
 
 
-def test_the_speed_without_a_steady_state_is_told() -> None:
+def test_a_speed_without_steady_state_is_reported() -> None:
     blade = library.load("park-cantilever").variants[0].blade
     with pytest.raises(
         CaseError, match=r"speed: 100000 rad/s: .*unstable, with an axial or shear strain of \d+%.*lower the speed"
@@ -240,7 +240,7 @@ def test_frequencies_of_the_surrogate_rise_as_the_papers_do() -> None:
             np.testing.assert_allclose(rises[:, 0], [0.08, 0.165], atol=0.01)
 
 
-def test_a_blade_that_hangs_is_stiffened_by_gravity_as_a_chain_is() -> None:
+def test_gravity_stiffens_a_hanging_blade_like_a_chain() -> None:
     """A heavy chain, ω = ½ j₀ₖ √(g/L) (Bernoulli 1733; Routh 1905); bending adds about √(EI/mgL³), here 2e-3 and less."""
     length, mass = 10.0, 5.0
     stiff = 1e-6 * mass * STANDARD_GRAVITY * length**3
@@ -294,7 +294,7 @@ def test_each_veering_and_crossing_has_a_panel_of_its_own(veering: Campbell) -> 
     assert encounters.draw(replace(veering, encounters=()), RPM, "close") is None
 
 
-def test_labels_at_the_lines_ends_do_not_lie_on_each_other() -> None:
+def test_labels_at_the_ends_of_lines_do_not_overlap() -> None:
     close = lambda omega: replace(southwell(omega), frequencies=np.array([5.0, 5.01]))  # noqa: E731
     figure = draw(campbell(BLADE, CampbellRequest((0.0, 0.5, 1.0), modes=2), close), RAD_S, "close")
     figure.canvas.draw()
@@ -322,7 +322,7 @@ def test_colours_of_pure_motions_are_their_families_and_of_mixtures_between() ->
     assert half == pytest.approx((np.array(flap) + np.array(edge)) / 2)
 
 
-def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
+def test_tables_have_the_values_of_the_diagram(veering: Campbell) -> None:
     page = {s.title: s for s in sheets(veering, RPM)}
     assert set(page) == {
         "Modes",
@@ -343,7 +343,7 @@ def test_tables_say_what_the_diagram_does(veering: Campbell) -> None:
     assert text.count("**✘ inside**") == sum(r.distance == 0 for r in veering.resonances) > 0
 
 
-def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
+def test_an_ambiguous_encounter_is_in_tables_and_figure() -> None:
     def jump(omega: float) -> Modes:
         shapes = np.zeros((2, 21, 4), complex)
         shapes[0, :, 2] = STATIONS
@@ -359,7 +359,7 @@ def test_a_doubt_is_in_the_tables_and_in_the_figure() -> None:
     assert "?" in texts(draw(result, RAD_S, "jump"))
 
 
-def test_the_answer_in_one_line() -> None:
+def test_the_verdict_is_one_line() -> None:
     assert verdict(diagram(margin=RequiredMargin(0.05), per_rev=(1,)), RAD_S) == (
         "Every mode stays at least 5 % away from every n per revolution at 1 to 2 rad/s."
     )

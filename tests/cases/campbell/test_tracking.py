@@ -98,7 +98,7 @@ def test_a_veering_much_narrower_than_the_steps_is_found_by_halving_them(couplin
     assert np.diff(tracks.omega).min() >= tracks.smallest * (1 - 1e-9)
 
 
-def test_what_the_smallest_step_cannot_settle_is_a_crossing_with_a_gap_no_wider_than_it_is() -> None:
+def test_an_unresolved_encounter_is_a_crossing_with_a_bounded_gap() -> None:
     coupling = 1e-4
     tracks = track(oscillators(coupling), SPEEDS, WEIGHT, 2)
     (e,) = met(tracks)
@@ -108,7 +108,7 @@ def test_what_the_smallest_step_cannot_settle_is_a_crossing_with_a_gap_no_wider_
     assert e.omega == pytest.approx(MEETING, abs=tracks.smallest)
 
 
-def test_a_doubt_that_stays_is_kept_and_not_guessed_away() -> None:
+def test_an_ambiguous_succession_is_reported() -> None:
     """No smaller steps allowed: up to the veering's middle the shapes have turned by 45° less what they were turned at rest."""
     coupling = 2.0
     tracks = track(oscillators(coupling), [0.0, float(MEETING), 6.0], WEIGHT, 2, smallest_step=1.0)
@@ -172,7 +172,7 @@ def test_a_shape_that_has_no_successor_ends_its_track_and_another_begins() -> No
     assert high - low <= tracks.smallest * (1 + 1e-9)
 
 
-def test_a_successor_that_is_too_unlike_is_none() -> None:
+def test_a_mode_of_another_shape_is_no_successor() -> None:
     """MAC 0.3: the mode of the next speed is nearest to the lost one, and still another."""
 
     def solve(omega: float) -> Modes:
@@ -199,7 +199,7 @@ def test_speeds_out_of_order_are_refused() -> None:
         track(oscillators(0.0), [1.0, 0.5], WEIGHT, 2)
 
 
-def test_modes_that_come_near_but_exchange_nothing_are_no_encounter() -> None:
+def test_modes_that_approach_without_exchange_are_no_encounter() -> None:
     """Flap at 8 rad/s, edge at 8.1 + (Ω − 3)²: nearest at 3 rad/s, uncoupled."""
 
     def solve(omega: float) -> Modes:

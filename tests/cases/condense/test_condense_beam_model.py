@@ -72,7 +72,7 @@ def test_a_section_of_one_node_is_that_node(folder: Path) -> None:
         (b"", "no matrix found"),
     ],
 )
-def test_a_matrix_that_is_no_text_is_told(folder: Path, content: bytes, phrase: str) -> None:
+def test_a_matrix_that_is_no_text_is_reported(folder: Path, content: bytes, phrase: str) -> None:
     (folder / "K.mtx").write_bytes(content)
     with pytest.raises(CaseError, match=phrase) as caught:
         condense(folder / "bar.toml")

@@ -25,7 +25,7 @@ LONG = ("exudyn-tree", "pinocchio", "scikit-fem-reissner", "scikit-fem-solid")
 
 @pytest.mark.slow
 @pytest.mark.parametrize("name", [pytest.param(n, marks=pytest.mark.nightly) if n in LONG else n for n in BLADE_CODES])
-def test_ours_conform(name: str) -> None:
+def test_adapters_of_the_package_conform(name: str) -> None:
     """Passes, or declines with a reason; one that declined everything would be caught by the capabilities' table."""
     code = registry.code(name)
     if code.version() is None:
@@ -83,7 +83,7 @@ def failures(code: Any, *, among: str = "") -> dict[str, str]:
 
 
 @pytest.mark.slow
-def test_core_conforms() -> None:
+def test_the_solver_conforms() -> None:
     outcomes = {str(check): judge(Core(), check) for check in CHECKS}
     assert {name for name, o in outcomes.items() if o.verdict != "pass"} == {"refusals"}
     assert outcomes["refusals"].reason == "the code accepts all these blades"
@@ -231,7 +231,7 @@ FAULTS: dict[str, tuple[Core, set[str]]] = {
 
 
 @pytest.mark.parametrize("fault", FAULTS)
-def test_mistakes_are_caught(fault: str) -> None:
+def test_every_mistake_fails_a_check(fault: str) -> None:
     code, by = FAULTS[fault]
     names = "|".join(f"^{re.escape(name)}$" for name in by)
     result = failures(code, among=names)
@@ -262,13 +262,13 @@ def test_a_finding_names_parameter_speed_and_mode(fault: str) -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("digits", [5, 7])
-def test_digits_that_are_said_are_enough(digits: int) -> None:
+def test_declared_digits_are_the_tolerance(digits: int) -> None:
     """A code that prints few is asked for no more, and keeps every law."""
     assert failures(Core(returned=lambda m: printed(m, digits), digits=digits)) == {}
 
 
 @pytest.mark.slow
-def test_memory_of_another_call_is_caught() -> None:
+def test_state_kept_from_another_call_is_detected() -> None:
     """A speed left over from the call before."""
     before = [0.0]
 
@@ -287,13 +287,13 @@ def test_whatever_a_code_raises_is_a_failure_in_one_line() -> None:
     assert result == {"rotating beam": "ZeroDivisionError: division by zero"}
 
 
-def test_a_code_that_is_not_there_is_not_run() -> None:
+def test_a_missing_code_is_not_run() -> None:
     outcomes = [judge(Core(installed=False, hint="pip install it"), check) for check in CHECKS]
     assert outcomes[0].verdict == "pass"
     assert {(o.verdict, o.reason) for o in outcomes[1:]} == {("not run", "not installed: pip install it")}
 
 
-def test_what_a_tip_mass_weighs_is_not_what_it_pulls() -> None:
+def test_weight_and_centrifugal_force_of_a_tip_mass_are_separate_checks() -> None:
     """pyBModes 1.19.1 puts a tip mass into its mass matrix alone: right at rest, 2.48 instead of Bir's 4.543 at speed 4."""
     pytest.importorskip("pybmodes")
     from southwell.references.pybmodes import beam as pybmodes_beam

@@ -18,7 +18,7 @@ from ...reports.cli.test_cli import southwell
 
 
 @pytest.mark.parametrize("name", MECHANISM_CODES)
-def test_ours_conform(name: str) -> None:
+def test_adapters_of_the_package_conform(name: str) -> None:
     code = registry.code(name)
     if code.version() is None:
         pytest.skip(f"not installed: {code.hint}")
@@ -67,7 +67,7 @@ def failures(code: Core) -> set[str]:
     return {str(o.check) for o in (judge(code, c) for c in FOR_MECHANISMS) if o.verdict == "fail"}
 
 
-def test_core_conforms() -> None:
+def test_the_solver_conforms() -> None:
     result = {str(c): judge(Core(), c) for c in FOR_MECHANISMS}
     assert {n: o.reason for n, o in result.items() if o.verdict != "pass"} == {
         "mechanism refusals": "the code accepts all these mechanisms"
@@ -122,7 +122,7 @@ def test_every_mistake_fails_a_check(fault: str) -> None:
     assert check in failures(code)
 
 
-def test_a_mistake_in_each_stage_of_the_reduction_is_seen(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mistake_in_each_stage_of_the_reduction_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
     """The adapter with its reduction's derivative left out, and with its links in another order than Pinocchio needs."""
     linkages = pytest.importorskip("southwell.references.linkages.pinocchio_tree")
     spanning = pytest.importorskip("southwell.references.linkages.spanning")
@@ -141,7 +141,7 @@ def test_a_mistake_in_each_stage_of_the_reduction_is_seen(monkeypatch: pytest.Mo
 
 
 @pytest.mark.slow
-def test_the_command_asks_what_fits_the_code(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_runs_the_checks_of_the_kind_of_code(capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = southwell("conform pinocchio-loops", capsys)
     if registry.code("pinocchio-loops").version() is None:
         assert status == 1

@@ -25,7 +25,7 @@ CODE = Code()
 
 
 @pytest.mark.slow
-def test_an_exit_is_a_failed_check_and_the_others_are_asked(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_exit_fails_its_check_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "leaver.py").write_text(CODE.replace("count == 3", "False"), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     checks = [c for c in CHECKS if c.name in ("cantilever at rest", "counts", "shapes")]
@@ -35,7 +35,7 @@ def test_an_exit_is_a_failed_check_and_the_others_are_asked(tmp_path: Path, monk
     assert (counts.verdict, counts.reason) == ("fail", "the code's process ended with exit status 0")
 
 
-def test_an_exception_that_is_an_exit_is_a_failed_check_too(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_raised_system_exit_fails_its_check_only(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "raiser.py").write_text(CODE, encoding="utf-8")
     monkeypatch.chdir(tmp_path)
     (counts,) = outcomes("raiser:CODE", [c for c in CHECKS if c.name == "counts"], Limits(60.0))

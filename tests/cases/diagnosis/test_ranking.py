@@ -37,7 +37,7 @@ def test_a_mode_counts_twice_only_if_its_difference_moves_with_speed() -> None:
     assert freedom(np.array([[0.01, 0.00, np.nan], [0.01, 0.02, 0.01]])) == 4
 
 
-def test_a_seeded_cause_is_named_and_what_has_no_effect_is_said() -> None:
+def test_a_seeded_cause_is_named_and_causes_without_effect_are_listed() -> None:
     altered = replace(BLADE, hub_radius=0.0)
     frequencies = np.array([modes.frequencies[:4] for modes in mesh_sweep(altered, PROBLEM.speeds, 40, 4)])
     diagnosis = explain(PROBLEM, frequencies)

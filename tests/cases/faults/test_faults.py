@@ -22,7 +22,7 @@ from southwell.reports.verification import controls as reported
 from ...support import counting_canaries, gate_canaries, samples
 
 
-def test_the_table_is_large_and_names_are_unique() -> None:
+def test_the_table_of_faults_is_large_and_names_are_unique() -> None:
     assert len(ALL) == len(BY_NAME) >= 40
     areas = Counter(f.area for f in ALL)
     assert set(areas) == {"solver", "adapter", "pairing", "uncertainty", "verdict", "reader"}
@@ -33,7 +33,7 @@ def test_the_table_is_large_and_names_are_unique() -> None:
 
 
 @pytest.mark.parametrize("canaries", [counting_canaries, gate_canaries])
-def test_the_canaries_of_counting_history_and_gate_report_nothing(canaries: Any) -> None:
+def test_checks_of_counting_history_and_gate_pass_without_a_fault(canaries: Any) -> None:
     assert canaries.canaries() == []
 
 
@@ -51,7 +51,7 @@ def test_a_fault_in_counting_history_or_gate_is_detected(canaries: Any, seam: se
 
 
 @pytest.mark.slow
-def test_one_of_each_other_kind_is_detected() -> None:
+def test_one_fault_of_each_other_kind_is_detected() -> None:
     """All of them are seeded every night, by ``verify --faults all``."""
     for control in table.run(["wide bracket", "unsupported() raises", "paired by number", "all is known"]):
         assert control.detected_by, control.control
@@ -73,7 +73,7 @@ def test_a_fault_that_does_nothing_is_missed() -> None:
 
 
 @pytest.mark.slow
-def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_judge_that_passes_everything_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(refined, "judge", lambda *_: ("pass", ""))
     monkeypatch.setattr(printed, "discretised", lambda *_: ("pass", ""))
     seeding.faultless.cache_clear()
@@ -82,13 +82,13 @@ def test_a_judge_that_passes_everything_is_noticed(monkeypatch: pytest.MonkeyPat
     assert control.missed
 
 
-def test_what_needs_a_code_that_is_absent_is_not_run_and_not_missed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_fault_that_needs_a_missing_code_is_not_run(monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(seeding, "descriptions", lambda trial: tuple(Description(name, name) for name in trial.codes))
     (control,) = table.run(["no hub radius"])
     assert (control.needs, control.missed) == ("exact-beam", False)
 
 
-def test_a_fault_acts_in_its_own_thread_only_and_is_gone_afterwards() -> None:
+def test_a_fault_acts_in_its_own_thread_only_and_is_removed_afterwards() -> None:
     original = verdict.unsigned
     with seeding.seeded(((verdict, "unsigned", lambda _: lambda value: "wrong"),)):
         assert verdict.unsigned(0.1) == "wrong"
@@ -97,7 +97,7 @@ def test_a_fault_acts_in_its_own_thread_only_and_is_gone_afterwards() -> None:
     assert verdict.unsigned is original
 
 
-def test_a_seam_that_is_gone_is_an_error() -> None:
+def test_a_fault_in_a_missing_function_is_an_error() -> None:
     with pytest.raises(AttributeError), seeding.seeded(((verdict, "nothing_like_it", lambda original: original),)):
         pass
 
@@ -134,7 +134,7 @@ def test_a_missed_fault_is_status_1_and_is_named() -> None:
     assert reported.headline(Run(())) == ""
 
 
-def test_rows_survive_the_disk(tmp_path: Path) -> None:
+def test_results_of_faults_are_read_as_written(tmp_path: Path) -> None:
     written = Run((samples.cell(),), controls=(control(), control(control="x", detected_by=(), change=None)))
     results_file.write(tmp_path / "results.jsonl", written)
     assert results_file.read(tmp_path / "results.jsonl") == written

@@ -40,7 +40,7 @@ def cell(verdict: Verdict, reference: float = 5.0, difference: float = 0.0) -> C
     )
 
 
-def test_only_a_fail_detects() -> None:
+def test_only_the_verdict_fail_detects_a_fault() -> None:
     correct = [cell("pass")]
     judgement = own.judged(CONTROL, correct, [cell("fail", 5.2, -0.04)])
     assert judgement.detected_by == ("beam, code, flapwise 1, 10 rad/s: fail",)
@@ -66,12 +66,12 @@ def test_witnesses_share_nothing_and_pass_every_mode_at_the_highest_speed() -> N
     assert own.witnesses([deck, good, *others, derived, slow], subject, codes) == ("package.code:CODE",)
 
 
-def test_a_blade_of_the_package_is_not_the_users() -> None:
+def test_blades_of_the_package_have_no_faults_of_their_own() -> None:
     assert users().users
     assert not blades(library.load("park-cantilever"))[0].users
 
 
-def test_without_an_independent_code_nothing_is_claimed() -> None:
+def test_without_an_independent_code_no_fault_is_tried() -> None:
     (run,) = own.run(users(), (), ("no hub radius",))
     assert run.needs == own.NO_WITNESS
     assert not run.missed

@@ -36,7 +36,7 @@ def test_a_users_turbine_has_its_own_faults_in_place_of_those_of_the_packages_bl
     assert not packaged.users
 
 
-def test_without_an_independent_code_nothing_is_claimed(subject: TurbineSubject) -> None:
+def test_without_an_independent_code_no_fault_is_tried(subject: TurbineSubject) -> None:
     (control,) = own_turbine.run(subject, (), ("turbine: tilt",))
     assert control.needs == own_turbine.NO_WITNESS
 

@@ -16,7 +16,7 @@ def subject(name: str, omega: float) -> BladeSubject:
     return BladeSubject(chosen.case, replace(chosen.variant, speeds=np.array([omega])))
 
 
-def test_all_are_detected_by_modes_outside_their_uncertainty() -> None:
+def test_faults_are_detected_by_modes_outside_their_uncertainty() -> None:
     result = {c.control: c for c in own.run(subject("park-cantilever", 10.0))}
     assert list(result) == [fault.name for fault in own.FAULTS]
     assert not [c for c in result.values() if c.missed or c.without_effect or c.needs]
@@ -31,7 +31,7 @@ def test_a_wrong_limit_within_its_uncertainty_is_without_effect() -> None:
     assert result.without_effect.endswith(", within their uncertainty")
 
 
-def test_a_blade_that_coarse_meshes_do_not_solve_says_so() -> None:
+def test_a_blade_that_coarse_meshes_do_not_solve_is_reported() -> None:
     assert {c.needs for c in own.run(subject("rotating-cable", 20.0))} == {own.NO_MESH}
 
 

@@ -25,7 +25,9 @@ def southwell(*arguments: str) -> int:
 
 
 @pytest.mark.parametrize("name", NAMES)
-def test_without_the_files_it_says_what_to_set(name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_without_the_files_the_variable_to_set_is_named(
+    name: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
     monkeypatch.delenv(FILES, raising=False)
     with pytest.raises(FilesMissingError, match=f"{name}: file: .*: {FILES} is not set: set it to a folder"):
         library.load(name)
@@ -35,7 +37,7 @@ def test_without_the_files_it_says_what_to_set(name: str, monkeypatch: pytest.Mo
     assert set(library.load_all()[1]) == set(NAMES)
 
 
-def test_a_file_that_is_there_and_damaged_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_a_damaged_file_is_an_error(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     path = tmp_path / "iea15" / "IEA-15-240-RWT_BeamDyn_blade.dat"
     path.parent.mkdir()
     path.write_text("nothing\n")
@@ -45,13 +47,17 @@ def test_a_file_that_is_there_and_damaged_is_an_error(monkeypatch: pytest.Monkey
     assert not isinstance(caught.value, FilesMissingError)
 
 
-def test_asked_for_by_name_it_is_bad_input(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_case_without_its_files_requested_by_name_is_bad_input(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.delenv(FILES, raising=False)
     assert southwell("verify", "iea-15") == 2
     assert capsys.readouterr().err.startswith("southwell: iea-15: file: ")
 
 
-def test_among_all_it_is_said_and_left_out(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_case_without_its_files_is_left_out_of_all_cases(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
     monkeypatch.delenv(FILES, raising=False)
     notes: list[str] = []
     chosen = {subject.name for subject in subjects(Request(), notes.append)}

@@ -37,11 +37,11 @@ def saved(request: pytest.FixtureRequest, tmp_path: Path):
     return save
 
 
-def test_toml_is_read_however_it_is_saved(saved) -> None:
+def test_toml_is_read_in_every_encoding_and_line_end(saved) -> None:
     assert toml.document(saved(TOML, "a.toml")) == {"name": "ä", "length": 2.0}
 
 
-def test_a_blades_file_is_read_however_it_is_saved(saved) -> None:
+def test_a_blade_file_is_read_in_every_encoding_and_line_end(saved) -> None:
     mount = Mount(length=50.0)
     content = (DATA / "elastodyn_blade.dat").read_text(encoding="utf-8")
     blade = readers.read(saved(content, "blade.dat"), mount)
@@ -51,7 +51,7 @@ def test_a_blades_file_is_read_however_it_is_saved(saved) -> None:
 
 
 @pytest.mark.parametrize("separator", [",", ";", "\t"])
-def test_tables_are_read_however_they_are_saved(saved, separator: str) -> None:
+def test_tables_are_read_in_every_encoding_and_line_end(saved, separator: str) -> None:
     result = read_table(saved(CSV.replace(",", separator), "a.csv"), COLUMNS)
     np.testing.assert_array_equal(result["mass [kg/m]"], [5.5, 2.5])
     (row,) = user_results.read("rig", saved(RESULTS.replace(",", separator), "rig.csv")).rows
@@ -87,7 +87,7 @@ BAD = {
 
 
 @pytest.mark.parametrize(("content", "phrase"), BAD.values(), ids=BAD)
-def test_what_is_no_text_is_told_in_one_line(content: bytes, phrase: str, tmp_path: Path) -> None:
+def test_a_binary_file_is_reported_in_one_line(content: bytes, phrase: str, tmp_path: Path) -> None:
     path = tmp_path / "file"
     path.write_bytes(content)
     with pytest.raises(CaseError) as caught:
@@ -113,7 +113,7 @@ def test_latin_1_is_read_in_the_formats_of_programs(tmp_path: Path) -> None:
     assert readers.read(path, Mount(length=50.0)).length == 50.0
 
 
-def test_a_file_that_must_not_be_read(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_file_without_read_permission_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "blade.toml"
     path.write_text("x = 1\n")
 

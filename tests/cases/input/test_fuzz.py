@@ -23,7 +23,7 @@ def folder(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Path]:
 
 
 @pytest.mark.parametrize("kind", [k for k in fuzz.FIRST if k != "arguments"])
-def test_what_is_mutated_is_right_before(folder: Path, kind: str) -> None:
+def test_inputs_are_valid_before_mutation(folder: Path, kind: str) -> None:
     assert (
         fuzz.take(kind, folder / fuzz.FIRST[kind], fuzz.random.Random(0)) is None
     )  # neither CaseError nor AssertionError
@@ -36,7 +36,7 @@ def test_mutated_input_is_refused_in_one_line_or_makes_sense(folder: Path, first
         assert not problem, f"seed {SEED}, trial {number}, {kind}: {problem}"
 
 
-def test_a_trial_notices(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_trial_detects_invalid_output(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """A traceback, a message of two lines, nonsense that is taken, and a hang."""
     reported = []
 
@@ -61,7 +61,7 @@ def test_a_trial_notices(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     assert "KeyError" in reported[3]
 
 
-def test_a_process_that_dies_is_told_and_the_rest_goes_on(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_crashed_process_is_reported_and_the_others_continue(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     dies = "import os, sys, json; n = int(sys.argv[2]); f = open(sys.argv[4], 'a')\n"
     dies += "f.write(json.dumps({'begins': n}) + '\\n'); f.close()\nif n == 0: os.abort()\n"
     dies += "open(sys.argv[4], 'a').write(json.dumps(dict(number=n, kind='k', wrong='', seconds=0.1)) + '\\n')\n"

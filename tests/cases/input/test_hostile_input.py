@@ -49,7 +49,7 @@ def test_only_regular_files_are_opened(folder: Path, name: str, why: str) -> Non
         readers.read(folder / "elastodyn_main.dat")
 
 
-def test_decks_of_too_many_lines_are_not_taken_apart(tmp_path: Path) -> None:
+def test_decks_of_too_many_lines_are_refused(tmp_path: Path) -> None:
     (tmp_path / "long.dat").write_text("1\n" * (MAX_LINES + 1))
     with pytest.raises(CaseError, match=r"long.dat: more than 250000 lines: check that it is the right file"):
         readers.read(tmp_path / "long.dat")
@@ -239,13 +239,13 @@ def test_a_rig_with_hundreds_of_decimals(folder: Path) -> None:
         ('file = "stations.csv"', 'file = "a\\u0000b"', "impossible name"),
     ],
 )
-def test_nonsense_in_a_case(folder: Path, old: str, new: str, phrase: str) -> None:
+def test_invalid_values_in_a_case_are_refused(folder: Path, old: str, new: str, phrase: str) -> None:
     with pytest.raises(CaseError, match=phrase) as caught:
         schema.read(changed(folder / "case.toml", old, new))
     assert "\n" not in str(caught.value)
 
 
-def test_precone_of_a_deck(folder: Path) -> None:
+def test_an_invalid_precone_of_a_deck_is_refused(folder: Path) -> None:
     text = (folder / "elastodyn_main.dat").read_text()
     (line,) = (line for line in text.splitlines() if "PreCone(1)" in line)
     changed(folder / "elastodyn_main.dat", line, "-2.5e9 PreCone(1)")
@@ -254,7 +254,7 @@ def test_precone_of_a_deck(folder: Path) -> None:
 
 
 @pytest.mark.parametrize("axis", ["[1e308, 1e308, 0.0]", "[[1.0], 0.0]", "[1.0, 0.0]", "[]", "[0, 0, 0]"])
-def test_axes_that_are_none(folder: Path, axis: str) -> None:
+def test_invalid_axes_are_refused(folder: Path, axis: str) -> None:
     changed(folder / "mechanism.toml", 'at_child = { axis = "-y" }', f"at_child = {{ axis = {axis} }}")
     with pytest.raises(CaseError, match=r"mechanism.toml: "):
         mechanisms.read(folder / "mechanism.toml")
@@ -301,7 +301,7 @@ def test_matrix_market_as_scipy_writes_it(tmp_path: Path, symmetry: str, sparse:
     assert (matrix_files.read_matrix(tmp_path / "a.mtx").matrix.toarray() == a).all()
 
 
-def test_a_negative_mass_on_the_diagonal(folder: Path) -> None:
+def test_a_negative_mass_on_the_diagonal_is_refused(folder: Path) -> None:
     matrix = scipy.io.mmread(folder / "M.mtx").toarray()  # pyright: ignore[reportAttributeAccessIssue]
     matrix[8, 8] *= -1
     scipy.io.mmwrite(folder / "M.mtx", ss.coo_array(matrix), symmetry="symmetric")
@@ -320,7 +320,7 @@ def test_a_negative_mass_on_the_diagonal(folder: Path) -> None:
         ('"difference":1e-6', '"difference":1e999', "not a result"),
     ],
 )
-def test_results_that_no_run_writes(folder: Path, old: str, new: str, phrase: str) -> None:
+def test_results_that_no_run_writes_are_refused(folder: Path, old: str, new: str, phrase: str) -> None:
     with pytest.raises(ValueError, match=phrase) as caught:
         results_file.read(changed(folder / "results.jsonl", old, new))
     assert "line " in str(caught.value)
@@ -332,7 +332,7 @@ def test_bad_utf8_in_a_history_is_a_torn_line(folder: Path) -> None:
     assert history.read(path).truncated == (2,)
 
 
-def test_where_names_are_impossible(folder: Path) -> None:
+def test_impossible_file_names_are_refused(folder: Path) -> None:
     for name in ("x" * 300, "a\0b", "loop"):
         with pytest.raises(CaseError, match=r"cannot be read"):
             files.text(folder / name)

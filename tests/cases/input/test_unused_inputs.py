@@ -43,7 +43,7 @@ EXPECTED = {
 
 
 @pytest.mark.parametrize("file", EXPECTED)
-def test_they_are_found_each_once(file: str) -> None:
+def test_each_unused_input_is_listed_once(file: str) -> None:
     remainder = readers.reading(DATA / file).source.unused
     assert {u.name: (u.largest, u.unit) for u in remainder} == EXPECTED[file]
     assert len(remainder) == len(EXPECTED[file])
@@ -56,7 +56,7 @@ def test_they_are_found_each_once(file: str) -> None:
         ("park-blade", "surrogate-untwisted", "twist", "twisted = false"),
     ],
 )
-def test_what_a_switch_leaves_out_of_a_table_is_said(case: str, variant: str, name: str, switch: str) -> None:
+def test_rows_that_a_switch_excludes_are_listed(case: str, variant: str, name: str, switch: str) -> None:
     unused = {v.name: {u.name: u for u in v.unused} for v in library.load(case).variants}
     switched = unused.pop(f"{case}/{variant}")
     assert set(switched) == {name}
@@ -66,12 +66,12 @@ def test_what_a_switch_leaves_out_of_a_table_is_said(case: str, variant: str, na
     assert not any(name in others for others in unused.values())
 
 
-def test_a_teeter_hinge_is_said_to_be_clamped() -> None:
+def test_a_teeter_hinge_is_listed_as_clamped() -> None:
     (teeter,) = [u for u in readers.reading(DATA / "fast7_main.fst").source.unused if u.name == "TeetDOF"]
     assert "treated as clamped" in teeter.why
 
 
-def test_a_locked_teeter_hinge_is_not(tmp_path: Path) -> None:
+def test_a_locked_teeter_hinge_is_not_listed(tmp_path: Path) -> None:
     text = (DATA / "fast7_main.fst").read_text()
     shutil.copy(DATA / "fast7_blade.dat", tmp_path)
     for old, new in (("True        TeetDOF", "False       TeetDOF"), ("   2        NumBl", "   3        NumBl")):
@@ -80,7 +80,7 @@ def test_a_locked_teeter_hinge_is_not(tmp_path: Path) -> None:
         assert not names & {"TeetDOF", "TeetDmp", "UndSling", "Delta3"}
 
 
-def test_a_column_that_is_not_known(tmp_path: Path) -> None:
+def test_an_unknown_column_is_listed(tmp_path: Path) -> None:
     lines = (DATA / "elastodyn_blade.dat").read_text().splitlines()
     head = next(k for k, line in enumerate(lines) if "BlFract" in line)
     lines[head] += " Chord"
@@ -90,7 +90,7 @@ def test_a_column_that_is_not_known(tmp_path: Path) -> None:
     assert chord.largest == -3.5
 
 
-def test_beamdyns_damping_that_is_switched_off_is_none(tmp_path: Path) -> None:
+def test_beamdyns_damping_that_is_switched_off_is_not_listed(tmp_path: Path) -> None:
     shutil.copy(DATA / "beamdyn_main.dat", tmp_path)
     text = (DATA / "beamdyn_blade.dat").read_text()
     (tmp_path / "beamdyn_blade.dat").write_text(text.replace("1   damp_type", "0   damp_type"))
@@ -130,7 +130,9 @@ LINE = "not used: BlPitch (largest 3 deg, elastodyn_main.dat)"
         "convert {file} {out}/it.toml",
     ],
 )
-def test_every_command_lists_them_once(tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str) -> None:
+def test_every_command_lists_unused_inputs_once(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], command: str
+) -> None:
     status, output, _ = southwell(command.format(file=DATA / "elastodyn_main.dat", out=tmp_path), capsys)
     assert status == 0
     assert output.count(LINE) == 1
@@ -140,7 +142,7 @@ def test_every_command_lists_them_once(tmp_path: Path, capsys: pytest.CaptureFix
     assert not page.exists() or page.read_text().replace("\\", "").count(LINE.removeprefix("not used: ")) == 1
 
 
-def test_beside_json_on_standard_error(capsys: pytest.CaptureFixture[str]) -> None:
+def test_unused_inputs_are_on_standard_error_beside_json(capsys: pytest.CaptureFixture[str]) -> None:
     line = f"modes {DATA / 'elastodyn_main.dat'} --rpm 0 --modes 2 --elements 5 --json"
     status, output, err = southwell(line, capsys)
     assert status == 0
@@ -164,7 +166,7 @@ modes = 1
 
 
 @pytest.mark.slow
-def test_in_a_run_its_results_and_its_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_unused_inputs_are_in_results_and_report(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     for name in ("elastodyn_main.dat", "elastodyn_blade.dat"):
         shutil.copy(DATA / name, tmp_path)
     (tmp_path / "deck.toml").write_text(CASE)

@@ -10,7 +10,6 @@ import pytest
 from southwell.cases.campbell.required import required_margin
 from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
-from southwell.cases.input.schema import speed_range
 from southwell.tests.support.blade_files import assert_same
 
 from ...reports.cli.test_cli import southwell
@@ -48,14 +47,14 @@ SECTION = "sec 1   0.00   0.00    0.0  -12.0"
         ("hawc2.htc", SECTION, "sec 1   0.00   0.00    3.6e-12  -12.0", ("hawc2_st.dat",), "hawc2.htc"),
     ],
 )
-def test_a_root_that_is_rounded(
+def test_a_rounded_root_is_accepted(
     tmp_path: Path, file: str, old: str, new: str, others: tuple[str, ...], first: str
 ) -> None:
     changed(tmp_path, file, old, new, *others)
     assert_same(readers.read(tmp_path / first), readers.read(DATA / first), 1e-12)
 
 
-def test_a_root_of_hawc2s_stations_that_is_rounded(tmp_path: Path) -> None:
+def test_a_rounded_root_of_hawc2s_stations_is_accepted(tmp_path: Path) -> None:
     shutil.copy(DATA / "hawc2.htc", tmp_path)
     lines = (DATA / "hawc2_st.dat").read_text().splitlines()
     rows = [k for k, line in enumerate(lines) if line.startswith("0.000000e+00")]
@@ -66,7 +65,7 @@ def test_a_root_of_hawc2s_stations_that_is_rounded(tmp_path: Path) -> None:
     assert_same(readers.read(tmp_path / "hawc2.htc"), readers.read(DATA / "hawc2.htc"), 1e-12)
 
 
-def test_a_root_that_is_elsewhere_is_still_refused(tmp_path: Path) -> None:
+def test_a_root_away_from_zero_is_refused(tmp_path: Path) -> None:
     path = changed(tmp_path, "beamdyn_main.dat", POINT, "0.0 0.0 1.0E-6 12.0", "beamdyn_blade.dat")
     with pytest.raises(CaseError, match="kp_zr: 1e-06: the first key point is the root"):
         readers.read(path)
@@ -99,7 +98,7 @@ def test_windio_1_with_coupled_zero_shear_is_refused(tmp_path: Path) -> None:
         readers.read(written(tmp_path / "b.yaml", data))
 
 
-def test_yaml_whose_anchor_is_used_again(tmp_path: Path) -> None:
+def test_yaml_may_reuse_an_anchor(tmp_path: Path) -> None:
     path = written(tmp_path / "b.yaml", samples()[1])
     plain = readers.read(path)
     second = "one: &x [1, 2]\ntwo: *x\nthree: &x [3, 4]\nfour: *x\n"
@@ -117,25 +116,11 @@ def test_yaml_with_an_alias_of_nothing_is_refused(tmp_path: Path) -> None:
         readers.read(tmp_path / "b.yaml")
 
 
-def test_bmodes_says_its_speed(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_rotor_speed_of_a_bmodes_file_is_used(capsys: pytest.CaptureFixture[str]) -> None:
     status, output, _ = southwell(f"modes {DATA / 'bmodes.bmi'} --modes 1 --elements 5 --json", capsys)
     assert status == 0
     (row,) = json.loads(output)
     assert row["omega_rad_s"] == pytest.approx(10 * np.pi / 30)
-
-
-@pytest.mark.parametrize(
-    ("text", "speeds"),
-    [("0,5,10", [0, 5, 10]), ("0, 5 ,10", [0, 5, 10]), ("0:4:2,10", [0, 2, 4, 10]), ("12", [12])],
-)
-def test_lists_of_speeds(text: str, speeds: list[float]) -> None:
-    np.testing.assert_array_equal(speed_range(text), speeds)
-
-
-@pytest.mark.parametrize("text", ["5,0", "0,0", "0,", "0,x", "0,-1"])
-def test_bad_lists_of_speeds(text: str) -> None:
-    with pytest.raises(ValueError, match=r"ascending|neither|needs"):
-        speed_range(text)
 
 
 @pytest.mark.parametrize(

@@ -63,18 +63,18 @@ def test_what_shares_an_engine_a_theory_or_rotation_terms_counts_once() -> None:
     assert len(count(run(a, replace(b, sections=a.sections, eigensolver=a.eigensolver)))) == 2
 
 
-def test_a_third_may_link_two() -> None:
+def test_two_codes_that_share_with_a_third_are_one_group() -> None:
     assert count(run(origin("a", "A"), origin("b", "B"), origin("c", "A", "b's"))) == [("a", "b", "c")]
 
 
 @pytest.mark.parametrize("field", ["engine", "theory", "rotation", "sections"])
-def test_who_has_something_of_cores_confirms_the_implementation_only(field: str) -> None:
+def test_codes_that_share_with_the_solver_confirm_the_implementation_only(field: str) -> None:
     derived = run(replace(origin("a", "A"), **{field: CORE}))
     assert count(derived) == []
     assert reported.table(derived)[0]["confirms the implementation only"] == "a"
 
 
-def test_who_declares_nothing_counts_for_nothing() -> None:
+def test_codes_without_declaration_are_in_no_group() -> None:
     derived = replace(run(origin("a", "A")), origins=())
     assert count(derived) == []
     assert "a (undeclared" in reported.table(derived)[0]["not counted"]
@@ -90,7 +90,7 @@ def test_who_declares_nothing_counts_for_nothing() -> None:
         {"role": "table", "target": 2e-2},
     ],
 )
-def test_who_does_not_agree_at_the_cases_target_is_in_no_group(changes: dict) -> None:
+def test_codes_that_do_not_agree_at_the_target_are_in_no_group(changes: dict) -> None:
     assert count(run(origin("a", "A"), **changes)) == []
 
 
@@ -105,7 +105,7 @@ def test_too_few_groups_are_status_1_and_a_line() -> None:
 
 
 @pytest.mark.slow
-def test_cases_require_groups_or_say_why_not() -> None:
+def test_cases_require_groups_or_give_a_reason() -> None:
     for case in library.load_all()[0].values():
         for variant in case.variants:
             required = case.text.compare.required(variant.name.partition("/")[2])

@@ -175,12 +175,12 @@ def test_a_rival_of_nearly_the_same_frequency_is_not_ambiguous() -> None:
     assert not partner.ambiguous
 
 
-def test_no_modes_no_partner() -> None:
+def test_without_modes_there_is_no_partner() -> None:
     empty = of_blade(Modes(0.0, np.zeros(0), np.zeros((0, 21, 4), complex), 1))
     assert pair(REFERENCE, empty, [0])[0].mode is None
 
 
-def test_motion_without_mass_is_like_nothing() -> None:
+def test_motion_without_mass_matches_no_mode() -> None:
     massless = uniform_blade("beam", 6.0, 0.3, EA=1e7, GJ=1e3, EI_y=1e4, EI_z=1.4e4, mass=1.2)
     twisting = np.array([shape(TORSION, 1)])
     assert mac(twisting, twisting, weights(massless))[0, 0] == 0.0

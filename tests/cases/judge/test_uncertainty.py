@@ -83,7 +83,7 @@ def test_faster_than_theory_is_not_believed() -> None:
     ("values", "phrase"),
     [([1.0, 1.1, 1.05], "not monotone: 1, 1.1, 1.05"), ([1.0, 1.1, 1.3], "not converging: 1, 1.1, 1.3")],
 )
-def test_what_does_not_converge_is_refused(values: list[float], phrase: str) -> None:
+def test_sequences_that_do_not_converge_are_refused(values: list[float], phrase: str) -> None:
     estimate = from_refinement((10, 20, 40), values, 2)
     assert estimate.uncertainty is None
     assert phrase in estimate.note
@@ -108,7 +108,7 @@ def test_the_last_change_of_a_spectral_code_is_its_uncertainty() -> None:
     assert estimate.uncertainty == pytest.approx(0.02 / 2.02)
 
 
-def test_nothing_is_surer_than_rounding() -> None:
+def test_the_uncertainty_is_at_least_the_rounding() -> None:
     assert from_refinement((4, 6, 8), [2.0, 2.0, 2.0], 0).uncertainty == ROUNDING
     assert from_refinement((4, 6, 8), [2.0, 2.0, 2.0], 4).uncertainty == ROUNDING
     assert from_bracket(2.0, 0.0).uncertainty == ROUNDING
@@ -118,7 +118,7 @@ def test_nothing_is_surer_than_rounding() -> None:
     ("text", "value", "half"),
     [("189.7", 189.7, 0.05), ("11.71", 11.71, 0.005), ("70", 70.0, 0.5), ("1.20", 1.2, 0.005), ("3.6e2", 360.0, 5.0)],
 )
-def test_a_printed_number_is_sure_to_half_its_last_digit(text: str, value: float, half: float) -> None:
+def test_the_uncertainty_of_a_printed_number_is_half_its_last_digit(text: str, value: float, half: float) -> None:
     estimate = from_print(text)
     assert estimate.value == value
     assert estimate.uncertainty == pytest.approx(half / value)

@@ -80,7 +80,7 @@ def test_one_number_stands_for_its_witness(changes: dict, standing: str, fine: s
 
 
 @pytest.mark.parametrize(("verdict", "standing"), [("fail", "disagrees"), ("inconclusive", "open")])
-def test_no_answer_where_one_was_due_is_no_agreement(verdict: str, standing: str) -> None:
+def test_a_missing_answer_is_no_agreement(verdict: str, standing: str) -> None:
     """A mode without a partner, a crash, a time limit."""
     silent = samples.empty(verdict, "no partner", code="alpha", shares="nothing")
     result = witnesses(run(cell("alpha"), silent), "beam")
@@ -118,7 +118,7 @@ def test_a_table_with_one_wider_target_is_coarse() -> None:
     assert (witness.kind, witness.target) == ("coarse source", 2e-2)
 
 
-def test_who_gave_no_number_is_no_witness() -> None:
+def test_a_code_without_a_number_is_no_witness() -> None:
     assert witnesses(run(samples.empty("not run", "not installed", code="delta", shares="nothing")), "beam") == []
 
 
@@ -127,7 +127,7 @@ RUN = run(
 )
 
 
-def test_the_report_counts_them() -> None:
+def test_the_report_counts_witnesses() -> None:
     first, second = reported.table(RUN)
     assert first["independent groups"] == "3"
     assert first["who agrees, group by group"] == "(alpha); (exact); (author2000/a, author2000/b)"

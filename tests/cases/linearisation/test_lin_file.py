@@ -25,7 +25,7 @@ def lin_file(text: str = TEXT, name: str = "case.1.lin") -> LinFile:
     return parsed(Path(name), text)
 
 
-def test_what_is_written_is_read() -> None:
+def test_a_written_file_is_read_unchanged() -> None:
     lin = lin_file()
     assert (lin.version, lin.azimuth, lin.rotor_speed, lin.digits) == ("v3.5.3", 0.3, 1.0, 4)
     assert "BeamDyn" in lin.modules
@@ -77,7 +77,7 @@ def test_what_is_written_is_read() -> None:
         ("Unheard-of state, furlong", ("", "Unheard-of state", "furlong", False, None)),
     ],
 )
-def test_a_state_is_understood_from_its_description(text: str, expected: tuple[object, ...]) -> None:
+def test_a_state_is_identified_by_its_description(text: str, expected: tuple[object, ...]) -> None:
     state = parse(text, True, 2, 0.0)
     assert (state.module, state.family, state.unit, state.rate, state.blade) == expected
 
@@ -140,7 +140,7 @@ def test_a_compressed_file_is_read(tmp_path: Path) -> None:
         read(path)
 
 
-def test_a_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_decompression_bomb_is_refused(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     path = tmp_path / "case.1.lin.gz"
     path.write_bytes(gzip.compress(b" " * 2_000_000))
     monkeypatch.setattr("southwell.cases.linearisation.lin_file.LARGEST_DATA", 1 << 20)

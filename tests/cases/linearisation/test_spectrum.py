@@ -75,7 +75,7 @@ def test_gravity_is_treated_by_floquet_theory() -> None:
     assert all(periodic[mode.name] < max(1e-6, mode.relative_uncertainty) for mode in result.modes)
 
 
-def test_names() -> None:
+def test_modes_are_named() -> None:
     names = [mode.name for mode in judged(healthy(Machine(gravity=0.0), 5)).modes]
     assert names[:7] == [
         "tower side-side 1",

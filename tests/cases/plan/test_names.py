@@ -29,7 +29,7 @@ from ...support.killing import CASE, SUPPORT
         ("a.toml --codes twins:CORE", r"code: 'southwell' is given twice, by this package and by --codes twins:CORE"),
     ],
 )
-def test_a_name_given_twice_is_one_line(
+def test_a_name_given_twice_is_reported_in_one_line(
     arguments: str, phrase: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)

@@ -49,17 +49,19 @@ def parsed(line: str, monkeypatch: pytest.MonkeyPatch) -> Request:
 
 
 @pytest.mark.parametrize("request_", [DEFAULT, EVERYTHING, replace(EVERYTHING, rpm=None, omega="0,10.5"), *EACH])
-def test_the_line_of_a_request_asks_the_same(request_: Request, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_command_line_of_a_request_gives_the_same_request(
+    request_: Request, monkeypatch: pytest.MonkeyPatch
+) -> None:
     assert parsed(command_line(request_), monkeypatch) == request_
 
 
-def test_the_line_does_not_say_where_a_run_is_executed() -> None:
+def test_the_command_line_of_a_request_omits_the_executor() -> None:
     """The results of a request are the same bytes on any machine."""
     request = Request(("tip-mass",), execution=Execution(4, None, out=Path("out"), fresh=True))
     assert command_line(request) == "southwell verify tip-mass"
 
 
 @pytest.mark.parametrize("degrees", [0.0, 2.5, -2.5, 61.123456789, 1e-7, 1 / 3])
-def test_an_angle_is_the_same_to_the_last_bit(degrees: float, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_angle_is_kept_to_the_last_bit(degrees: float, monkeypatch: pytest.MonkeyPatch) -> None:
     request = Request(("blade.dat",), mount=Mount(precone=radians(degrees)))
     assert parsed(command_line(request), monkeypatch) == request

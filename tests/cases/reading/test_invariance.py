@@ -140,7 +140,7 @@ MISTAKES = {
 
 
 @pytest.mark.parametrize("name", MISTAKES)
-def test_a_mistake_of_a_convention_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_wrong_convention_is_named(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
     (owner, attribute, make), first = MISTAKES[name]
     original = getattr(owner, attribute)
     monkeypatch.setattr(owner, attribute, make(original))
@@ -153,13 +153,13 @@ def test_a_mistake_of_a_convention_is_named(name: str, monkeypatch: pytest.Monke
     assert row.reason.endswith(f": wrong: {kind.convention}")
 
 
-def test_only_blades_of_users_are_described_otherwise() -> None:
+def test_only_blades_of_users_are_redescribed() -> None:
     (subject,) = blades(library.load("pretwisted-beam"))
     assert not subject.users
     assert replace(subject, case=replace(subject.case, path="elsewhere/blade.toml")).users
 
 
-def test_a_change_ends_a_run_with_status_1() -> None:
+def test_frequencies_that_depend_on_the_description_give_status_1() -> None:
     cell = Cell(
         *("wing", 1.0, 1, "flapwise", "a-code", "1", "code", 5.0, 5.0, 0.0, 1e-9, 1e-3, "pass"),
         shares="nothing",

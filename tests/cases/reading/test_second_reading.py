@@ -18,8 +18,6 @@ from southwell.cases.reading.comparison import compare
 from southwell.cases.reading.second import SecondReading, read_again
 from southwell.cases.solve.properties import of_reading
 from southwell.core.blade import Blade
-from southwell.references.readers import openfast as second_openfast
-from southwell.references.readers import stations as second_stations
 from southwell.tests.support import blade_files, decks
 from southwell.tests.support.blade_files import real
 
@@ -330,35 +328,11 @@ def unsymmetric(path: Path) -> None:
     path.write_text("\n".join(lines) + "\n")
 
 
-EDGEWISE = "edgewise stiffness at station 5 (50 m): reader 3e+06 N m², {} 1.65e+07 N m²"
-
-
-def test_the_reason_names_property_station_and_both_values(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path, mount = deck(tmp_path, "elastodyn_main.dat")
-    monkeypatch.setattr(elastodyn, "section_stiffness", exchanged(elastodyn.section_stiffness, 2, 3))
-    repeated = again(path, mount)
-    altered = [p.where(repeated.reader) for p in repeated.contradictions]
-    assert [line.partition(" at ")[0] for line in altered] == ["flapwise stiffness", "edgewise stiffness"]
-    assert altered[1] == EDGEWISE.format(repeated.reader)
-
-
 def test_a_mount_that_the_user_states_is_not_compared(tmp_path: Path) -> None:
     path, _ = deck(tmp_path, "elastodyn_main.dat")
     repeated = again(path, Mount(hub_radius=3.0, multipliers=(1.0, 1.0, 1.1)))
     assert not repeated.contradictions
     assert "hub radius" not in {p.name for p in repeated.properties}
-
-
-def test_a_parser_that_is_not_installed_is_named_with_its_hint(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    path, mount = deck(tmp_path, "elastodyn_main.dat")
-
-    def absent(distribution: str, import_: object) -> None:
-        raise second_stations.NotInstalledError(f"{distribution} is not installed: {second_stations.HINT}")
-
-    monkeypatch.setattr(second_openfast, "parser", absent)
-    repeated = again(path, mount)
-    assert repeated.missing.startswith("weio is not installed: pip install '.[readers]'")
-    assert not repeated.contradictions
 
 
 def test_a_file_that_the_parser_does_not_read_is_no_difference() -> None:

@@ -103,7 +103,7 @@ def models(code: BladeAdapter, blade: Blade) -> list[Fingerprint]:
 
 
 @pytest.mark.parametrize("name", REPORT)
-def test_every_model_weighs_what_its_stations_weigh(name: str) -> None:
+def test_the_mass_of_every_model_is_that_of_its_stations(name: str) -> None:
     adapter = code(name)
     fitting = [blade for blade in BLADES.values() if adapter.unsupported(blade) is None]
     assert fitting
@@ -114,13 +114,13 @@ def test_every_model_weighs_what_its_stations_weigh(name: str) -> None:
 
 
 @pytest.mark.parametrize("blade", BLADES.values(), ids=BLADES)
-def test_core_weighs_what_its_stations_weigh(blade: Blade) -> None:
+def test_the_mass_of_the_solvers_model_is_that_of_its_stations(blade: Blade) -> None:
     result = wt.weights(blade, wt.stations_of(blade), [wt.of_core(blade)])
     assert len(result) == 12
     assert max(abs(w.difference) for w in result) < 1e-8
 
 
-def test_codes_that_report_are_those_listed() -> None:
+def test_codes_with_a_fingerprint_are_those_listed() -> None:
     reporting = {
         name
         for name in BLADE_CODES
@@ -148,7 +148,7 @@ SAMPLE_THEMSELVES = ("exudyn-tree", "exudyn-beam", "scikit-fem-reissner", "sciki
 
 @pytest.mark.parametrize("name", ["core", "pinocchio", *SAMPLE_THEMSELVES])
 @pytest.mark.parametrize(("module", "function"), SAMPLING, ids=["core", "references"])
-def test_an_error_of_one_sampling_is_not_in_the_models_of_the_other(
+def test_an_error_of_one_sampling_affects_its_own_models_only(
     monkeypatch: pytest.MonkeyPatch, module: Any, function: str, name: str
 ) -> None:
     blade = tapered(pitch=0.0, twist=np.zeros(4))
@@ -165,7 +165,7 @@ def test_an_error_of_one_sampling_is_not_in_the_models_of_the_other(
     ("name", "module", "function"),
     [("exudyn-tree", *SAMPLING[1]), ("scikit-fem-reissner", *SAMPLING[1]), ("pinocchio", *SAMPLING[0])],
 )
-def test_one_per_cent_of_mass_is_found_by_name(
+def test_a_mass_error_of_one_per_cent_is_named(
     monkeypatch: pytest.MonkeyPatch, name: str, module: Any, function: str
 ) -> None:
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
@@ -180,7 +180,9 @@ def test_one_per_cent_of_mass_is_found_by_name(
 
 
 @pytest.mark.parametrize("name", SAMPLE_THEMSELVES)
-def test_one_per_cent_of_mass_in_core_is_seen_in_the_frequencies(monkeypatch: pytest.MonkeyPatch, name: str) -> None:
+def test_a_mass_error_of_one_per_cent_in_the_solver_fails_frequencies(
+    monkeypatch: pytest.MonkeyPatch, name: str
+) -> None:
     blade, adapter = tapered(pitch=0.0, twist=np.zeros(4)), code(name)
     computed = adapter.modes(blade, 0.0, adapter.levels[1], 2).frequencies
     agreed = solve.modes(blade, 0.0, 32, 2).frequencies
@@ -206,7 +208,7 @@ def softer(old: Callable[..., Any]) -> Callable[..., Any]:
     ("name", "module", "function"),
     [("core", *SAMPLING[0]), ("exudyn-tree", *SAMPLING[1]), ("scikit-fem-reissner", *SAMPLING[1])],
 )
-def test_one_per_cent_of_stiffness_is_found_by_name(
+def test_a_stiffness_error_of_one_per_cent_is_named(
     monkeypatch: pytest.MonkeyPatch, name: str, module: Any, function: str
 ) -> None:
     blade = tapered(pitch=0.0, twist=np.zeros(4))
@@ -249,7 +251,7 @@ def test_a_code_without_rotary_inertia_is_compared_without_it() -> None:
     assert abs(without.difference) < 1e-5 < abs(with_it.difference)
 
 
-def test_one_per_cent_of_mass_in_one_adapter_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_mass_error_of_one_per_cent_in_one_adapter_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
     def sampled(blade: Blade, s: Any) -> Any:
         at = sampling.sample(blade, s)
         return replace(at, mass=1.01 * at.mass)
@@ -261,7 +263,7 @@ def test_one_per_cent_of_mass_in_one_adapter_is_found(monkeypatch: pytest.Monkey
 
 
 @pytest.mark.slow
-def test_fingerprints_cross_the_process_unchanged() -> None:
+def test_fingerprints_are_transferred_between_processes_unchanged() -> None:
     blade = BLADES["crooked"]
     adapter = code("scikit-fem-reissner")
     fine, coarse = worker.fingerprints("scikit-fem-reissner", blade, [16, 8], Limits())

@@ -41,7 +41,7 @@ RUN = Run(
 MADE = datetime(2026, 2, 3, 4, 5, 6, tzinfo=UTC)
 
 
-def test_an_entry_says_what_the_run_says(tmp_path: Path) -> None:
+def test_an_entry_has_the_values_of_the_run(tmp_path: Path) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "abc", "a machine", MADE))
     (result,) = history.read(file).entries
@@ -103,7 +103,7 @@ def test_a_line_cut_short_is_named_and_spoils_no_other(tmp_path: Path, size: int
     assert [e.commit for e in after.entries] == [*(e.commit for e in content.entries), "third"]
 
 
-def test_within_a_character(tmp_path: Path) -> None:
+def test_a_line_truncated_within_a_character_is_skipped(tmp_path: Path) -> None:
     file = tmp_path / "history.jsonl"
     history.append(file, history.entry(RUN, "first", date=MADE))
     with file.open("ab") as cut:
@@ -119,14 +119,14 @@ def test_within_a_character(tmp_path: Path) -> None:
         ("a,b\nc,d\n", "line 1: not JSON.*southwell history"),
     ],
 )
-def test_another_file_is_refused(tmp_path: Path, text: str, phrase: str) -> None:
+def test_a_file_of_another_format_is_refused(tmp_path: Path, text: str, phrase: str) -> None:
     file = tmp_path / "other"
     file.write_text(text)
     with pytest.raises(ValueError, match=phrase):
         history.read(file)
 
 
-def test_add_and_list(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_adds_and_lists_runs(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     results_file.write(tmp_path / "results.jsonl", RUN)
     file = tmp_path / "history.jsonl"
     for where in (tmp_path, tmp_path / "results.jsonl"):  # the folder, or the file in it
@@ -161,7 +161,9 @@ def test_the_commit_is_that_of_the_checkout(tmp_path: Path, capsys: pytest.Captu
         ("history list {0}/good", "not a run"),
     ],
 )
-def test_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, phrase: str) -> None:
+def test_invalid_input_is_reported_in_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], line: str, phrase: str
+) -> None:
     (tmp_path / "empty").write_bytes(b"")
     results_file.write(tmp_path / "good", RUN)
     status, _, err = southwell(line.format(tmp_path), capsys)

@@ -52,7 +52,7 @@ CHECKED = ("pass", "inconclusive", "fail")
 
 @pytest.mark.parametrize("before", [None, *get_args(Verdict)[:1], "inconclusive", "fail", "not run", "not applicable"])
 @pytest.mark.parametrize("after", [None, "pass", "inconclusive", "fail", "not run", "not applicable"])
-def test_a_check_that_is_worse_or_no_longer_made_counts(before: Verdict | None, after: Verdict | None) -> None:
+def test_a_worse_or_missing_check_fails(before: Verdict | None, after: Verdict | None) -> None:
     runs = [replace(RIGHT, property_checks=(replace(READING, verdict=v),) if v else ()) for v in (before, after)]
     comparison = compared(runs[1], runs[0])
     order = [*CHECKED, None, "not run", "not applicable"]

@@ -107,7 +107,7 @@ def test_coriolis_is_nothing_out_of_the_plane() -> None:
     assert share("no Coriolis", "edgewise 1") == pytest.approx(1.2e-4, abs=1e-5)  # Yoo–Shin, coupled or not: 0.012 %
 
 
-def test_what_a_blade_lacks_is_not_switched_off() -> None:
+def test_effects_that_a_blade_lacks_are_not_switched_off() -> None:
     """Shear is switched on where a blade is rigid in it, off where it is not; stretch where there is any."""
     case = library.load(CASE)
     variant = replace(case.variants[0], speeds=np.array([0.0]))
@@ -164,7 +164,7 @@ def test_a_bound_is_the_largest_of_the_codes_that_were_refined() -> None:
 
 
 @pytest.mark.slow
-def test_the_budget_survives_the_disk_and_is_shown(tmp_path: Path) -> None:
+def test_the_budget_is_read_as_written_and_shown(tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     results_file.write(path, run())
     assert results_file.read(path) == run()

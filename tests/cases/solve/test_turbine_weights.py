@@ -37,7 +37,7 @@ def failing(model: Fingerprint, second: Weighed) -> set[str]:
     return {row.part for row in turbine_weights.rows("small", "code", "1", model, second) if row.verdict != "pass"}
 
 
-def test_cores_turbine_weighs_what_the_deck_does(weighed: tuple[Turbine, Weighed]) -> None:
+def test_the_solvers_turbine_has_the_mass_of_the_deck(weighed: tuple[Turbine, Weighed]) -> None:
     turbine, second = weighed
     model = turbine_weights.of_core(turbine)
     assert not failing(model, second)
@@ -46,14 +46,14 @@ def test_cores_turbine_weighs_what_the_deck_does(weighed: tuple[Turbine, Weighed
 
 
 @pytest.mark.parametrize("code", [EXUDYN, PINOCCHIO], ids=lambda code: code.name)
-def test_a_codes_turbine_weighs_what_the_deck_does(code: TurbineAdapter, weighed: tuple[Turbine, Weighed]) -> None:
+def test_the_turbine_of_a_code_has_the_mass_of_the_deck(code: TurbineAdapter, weighed: tuple[Turbine, Weighed]) -> None:
     turbine, second = weighed
     model = code.turbine_fingerprint(turbine, 6)
     assert model is not None
     assert not failing(model, second)
 
 
-def test_a_codes_process_reports_what_its_turbine_weighs(weighed: tuple[Turbine, Weighed]) -> None:
+def test_the_process_of_a_code_reports_the_mass_of_its_turbine(weighed: tuple[Turbine, Weighed]) -> None:
     turbine, second = weighed
     (code,) = describe(["exudyn-turbine"], [])
     (task,) = turbine_weights.weighings("small", turbine, second, [code], Limits())

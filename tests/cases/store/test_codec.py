@@ -31,12 +31,12 @@ MODES = Modes(2.0, np.array([1.0, 1 / 3 + 1.0]), np.full((2, len(STATIONS), 4), 
         Failure("crashed", "x"),
     ],
 )
-def test_plain_values_and_dataclasses_come_back(value: Any) -> None:
+def test_plain_values_and_dataclasses_are_restored(value: Any) -> None:
     second = decode(encode(value))
     assert (second, type(second), repr(second)) == (value, type(value), repr(value))
 
 
-def test_arrays_come_back_bit_for_bit_and_times_do_not() -> None:
+def test_arrays_are_restored_bit_for_bit_and_times_are_not() -> None:
     second = decode(encode(MODES))
     assert second.shapes.tobytes() == MODES.shapes.tobytes()
     assert second.frequencies.tobytes() == MODES.frequencies.tobytes()
@@ -59,7 +59,7 @@ def test_arrays_come_back_bit_for_bit_and_times_do_not() -> None:
         [],
     ],
 )
-def test_what_was_not_written_by_this_package_is_refused(stored: list[Any]) -> None:
+def test_data_of_other_programs_are_refused(stored: list[Any]) -> None:
     with pytest.raises(ValueError, match="not a stored answer"):
         decode(msgspec.json.encode(stored))
 

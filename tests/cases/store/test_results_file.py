@@ -23,14 +23,14 @@ def path(tmp_path: Path) -> Path:
     return tmp_path / "results.jsonl"
 
 
-def test_a_whole_one_is_complete(path: Path) -> None:
+def test_a_whole_file_is_complete(path: Path) -> None:
     assert results_file.read(path) == WHOLE
     first, *_, last = path.read_text().splitlines()
     assert first.startswith('{"kind":"plan"')
     assert last.startswith('{"kind":"end"')
 
 
-def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
+def test_a_truncated_file_is_incomplete(path: Path) -> None:
     content = path.read_bytes()
     for size in range(0, len(content), 997):
         path.write_bytes(content[:size])
@@ -50,7 +50,7 @@ def test_it_is_incomplete_wherever_it_is_cut(path: Path) -> None:
         (lambda lines: lines + lines, "does not begin with the plan"),
     ],
 )
-def test_what_is_missing_is_said(path: Path, change: Callable[[list[str]], list[str]], phrase: str) -> None:
+def test_missing_cells_are_named(path: Path, change: Callable[[list[str]], list[str]], phrase: str) -> None:
     path.write_text("".join(change(path.read_text().splitlines(keepends=True))))
     assert phrase in results_file.read(path).unfinished
 

@@ -47,7 +47,7 @@ def reported(folder: Path, command: str) -> tuple[int, str]:
 @pytest.mark.parametrize(
     "count", [pytest.param(1, marks=pytest.mark.nightly), 4, pytest.param(8, marks=pytest.mark.nightly)]
 )
-def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: Path, undisturbed: Path) -> None:
+def test_a_run_killed_with_some_answers_continues(count: int, tmp_path: Path, undisturbed: Path) -> None:
     path = tmp_path / "out" / PARTIAL
     assert killing.kill(killing.start(tmp_path), lambda: killing.answers(path) >= count)
     stored, before = killing.stored(path), killing.asked(tmp_path)
@@ -65,7 +65,7 @@ def test_killed_when_some_answers_are_there_it_continues(count: int, tmp_path: P
 
 
 @pytest.mark.nightly
-def test_killed_while_the_report_is_written_nothing_is_asked_again(tmp_path: Path, undisturbed: Path) -> None:
+def test_a_run_killed_while_writing_its_report_asks_nothing_again(tmp_path: Path, undisturbed: Path) -> None:
     out = tmp_path / "out"
     assert killing.kill(killing.start(tmp_path), (out / RESULTS).exists)
     before = killing.asked(tmp_path)
@@ -126,7 +126,7 @@ def test_a_disk_that_fills_up_keeps_what_is_there(tmp_path: Path, undisturbed: P
 
 
 @pytest.mark.nightly
-def test_killed_at_a_hundred_random_moments(tmp_path: Path, undisturbed: Path) -> None:
+def test_a_run_killed_at_random_moments_continues(tmp_path: Path, undisturbed: Path) -> None:
     """Every run is killed at a moment of its own, or comes to its end; the next one continues."""
     seed = int(os.environ.get("SOUTHWELL_SEED", "0")) or Random().randrange(10**9)
     random, kills, runs = Random(seed), 0, 0

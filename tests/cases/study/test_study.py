@@ -115,7 +115,7 @@ class Stopping(Serial):
 
 
 @pytest.mark.parametrize("at", [0, 1, 4])
-def test_a_stopped_study_continues_and_solves_nothing_twice(at: int, tmp_path: Path) -> None:
+def test_a_stopped_study_continues_without_solving_again(at: int, tmp_path: Path) -> None:
     design, samples = study(tmp_path), []
 
     def counted(task: Task) -> bytes:
@@ -200,7 +200,7 @@ def test_the_file_of_another_version_is_refused(tmp_path: Path, monkeypatch: pyt
 
 
 @pytest.mark.parametrize("content", [b"notes\n", b"notes without an end", b'{"study": 1}\n', b"\0" * 100])
-def test_a_file_that_is_no_study_is_refused_and_unchanged(content: bytes, tmp_path: Path) -> None:
+def test_another_kind_of_file_is_refused_and_unchanged(content: bytes, tmp_path: Path) -> None:
     path = tmp_path / "out.jsonl"
     path.write_bytes(content)
     with pytest.raises(CaseError, match="not the file of a study"):
@@ -293,7 +293,7 @@ def test_statistics_are_those_of_the_rows() -> None:
     assert (spread["low"], spread["high"]) == (pytest.approx(1.1), pytest.approx(5.6))  # between the ordered values
 
 
-def test_a_row_that_is_not_one_is_not_read(tmp_path: Path) -> None:
+def test_an_invalid_row_is_not_read(tmp_path: Path) -> None:
     path = tmp_path / "out.jsonl"
     path.write_text('{}\n{"blade": 3}\n')
     with pytest.raises(msgspec.ValidationError):

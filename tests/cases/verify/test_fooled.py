@@ -36,7 +36,6 @@ from southwell.reports.verification import evidence, terminal
 from southwell.reports.verification import report as matrix_report
 from southwell.reports.verification.case_tables import comparison
 
-from ...reports.cli.test_cli import southwell
 from ...support import matrix_runs, samples
 
 PARK = "park-cantilever"
@@ -44,7 +43,7 @@ PARK = "park-cantilever"
 
 FOOLING = (
     *("LOST", "EXTRA", "DAMPED", "WIDE", "WIDE_ONCE", "BRACKET", "GHOSTS"),
-    *("WANDERING", "BACKWARDS", "ZERO", "BLOWS", "NO_VERSION", "DEAF", "CRUDE", "SCATTERS", "FRAGILE", "COPY"),
+    *("WANDERING", "BACKWARDS", "ZERO", "DEAF", "CRUDE", "SCATTERS", "FRAGILE", "COPY"),
 )
 
 
@@ -113,7 +112,7 @@ def test_a_spurious_or_damped_mode_makes_an_answer_inconclusive(code: str, reaso
 
 @pytest.mark.slow
 @pytest.mark.parametrize("code", ["wide", "wide-once"])
-def test_a_code_cannot_declare_itself_unsure_and_be_believed(code: str) -> None:
+def test_a_large_declared_uncertainty_is_inconclusive(code: str) -> None:
     assert {c.verdict for c in of(code)} == {"inconclusive"}
 
 
@@ -216,7 +215,7 @@ def test_a_mode_that_the_code_has_twice_is_no_agreement() -> None:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("code", ["wandering", "backwards"])
-def test_refinements_that_are_none_are_a_failure(code: str) -> None:
+def test_refinements_with_equal_or_fewer_elements_are_a_failure(code: str) -> None:
     """Else the same number of elements is a division by zero, and a falling one an order of convergence."""
     (cell,) = of(code)
     assert (cell.verdict, cell.mode) == ("fail", 0)
@@ -227,26 +226,6 @@ def test_refinements_that_are_none_are_a_failure(code: str) -> None:
 @pytest.mark.slow
 def test_a_frequency_of_zero_is_a_failure() -> None:
     assert of("zero")[0].verdict == "fail"
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize(
-    ("code", "phrase"), [("blows", "unsupported(): RuntimeError"), ("no-version", "version(): OSError")]
-)
-def test_an_exception_in_an_adapter_costs_its_own_cells(code: str, phrase: str) -> None:
-    cells = of(code)
-    assert [c.verdict for c in cells] == ["fail"]
-    assert phrase in cells[0].reason
-    assert "\n" not in cells[0].reason
-    assert any(c.verdict == "pass" for c in run().cells)
-
-
-@pytest.mark.slow
-def test_nothing_compared_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    command = f"verify articulated/flap --codes exact-beam --faults none --workers 1 --out {tmp_path}"
-    status, out, _ = southwell(command, capsys)
-    assert status == 1
-    assert "Open: nothing was compared" in out
 
 
 def test_a_wider_target_of_a_table_is_bounded_and_shown() -> None:
@@ -304,7 +283,7 @@ def test_a_larger_uncertainty_never_makes_evidence(d: float, u: float, more: flo
 
 @settings(derandomize=True)
 @given(d=sizes, u=sizes, more=sizes, rest=sizes, limit=st.none() | sizes, target=st.floats(1e-9, 1.0))
-def test_nor_does_either_of_an_answer_of_a_given_discretisation(d, u, more, rest, limit, target) -> None:
+def test_larger_differences_never_excuse_a_given_discretisation(d, u, more, rest, limit, target) -> None:
     first = discretised(d, u, target, rest, limit, "x")[0]
     for d2, u2, rest2, limit2 in (
         (d + more, u, rest, limit),

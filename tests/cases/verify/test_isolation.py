@@ -77,7 +77,7 @@ def of(run: Run, code: str) -> list[Cell]:
 
 
 @pytest.mark.slow
-def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) -> None:
+def test_failing_codes_do_not_affect_other_codes(case: Case, folder: Path) -> None:
     """They declare the name ``misdeed``, if they come so far; else they go by what they were asked for."""
     alone = of(run(case, "southwell-equation"), "southwell-equation")
     assert len(alone) == 4
@@ -92,7 +92,7 @@ def test_neighbours_of_misbehaving_codes_are_unharmed(case: Case, folder: Path) 
         assert summary.status(result) == (1 if verdict == "fail" else 0)
 
 
-def test_an_entry_point_that_exits_costs_its_own_cells(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_entry_point_that_exits_affects_its_own_code_only(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     written("import-exit_0", folder)
     info = folder / "theirs-1.0.dist-info"
     info.mkdir()
@@ -111,7 +111,7 @@ def test_an_entry_point_that_exits_costs_its_own_cells(folder: Path, monkeypatch
     assert "No module named 'no_such_module'" in gone.failure.reason
 
 
-def test_an_error_of_ours_in_a_column_costs_that_column(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_internal_error_affects_its_own_column_only(case: Case, monkeypatch: pytest.MonkeyPatch) -> None:
     def wrong(*_: object) -> None:
         raise IndexError("list index out of range")
 

@@ -74,7 +74,7 @@ def of(run: Run, code: str) -> list[Cell]:
 
 
 @pytest.mark.slow
-def test_a_right_code_passes_with_numbers_to_show_for_it(at_rest: Run) -> None:
+def test_a_correct_code_passes_with_its_numbers(at_rest: Run) -> None:
     cells = of(at_rest, "good")
     assert [c.verdict for c in cells] == ["pass"] * 4
     assert [c.mode for c in cells] == [1, 2, 3, 4]
@@ -97,7 +97,7 @@ def test_a_right_code_passes_with_numbers_to_show_for_it(at_rest: Run) -> None:
 
 
 @pytest.mark.slow
-def test_a_code_is_refined_until_it_is_sure(at_rest: Run) -> None:
+def test_a_code_is_refined_until_its_uncertainty_is_small(at_rest: Run) -> None:
     """Error 5 n⁻²·⁵ of a code said to be of order 2: GCI with factor 3 is 2.3e-3 at 40, 4.1e-4 at 80, 7e-5 at 160 elements."""
     assert {c.elements for c in of(at_rest, "good")} == {40}
     assert len(of(at_rest, "rough")) == 4
@@ -144,7 +144,7 @@ def test_modes_without_a_partner_fail(at_rest: Run) -> None:
     assert {c.verdict for c in of(at_rest, "sideways")} == {"fail"}
 
 
-def test_who_cannot_or_is_not_there_says_so_at_every_speed(case) -> None:
+def test_unsupported_blades_and_missing_codes_have_a_reason_at_every_speed(case) -> None:
     run = solve(case("[0, 1]"), f"{ANALYTIC}UNABLE", f"{ANALYTIC}ABSENT")
     assert [(c.verdict, c.reason) for c in of(run, "unable")] == [("not applicable", "blades only on Sundays")] * 2
     assert [(c.verdict, c.reason) for c in of(run, "absent")] == [("not run", "not installed: pip install nothing")] * 2
@@ -158,7 +158,7 @@ def test_the_same_discretisation_is_held_to_rounding(case) -> None:
     assert {c.verdict for c in of(run, "bad-twin")} == {"fail"}
 
 
-def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case) -> None:
+def test_the_discretisation_of_the_source_has_a_column_with_its_error(case) -> None:
     cells = [c for c in solve(case()).cells if c.role == "discretisation"]
     assert [c.verdict for c in cells] == ["known difference"] * 4
     assert all(c.elements == 10 for c in cells)
@@ -175,7 +175,7 @@ def test_the_sources_discretisation_has_its_own_column_and_its_error_a_name(case
         ("GIVE_UP", "fail", "no steady state"),
     ],
 )
-def test_a_failing_code_is_one_outcome_among_others(case, code: str, verdict: str, phrase: str) -> None:
+def test_a_failing_code_does_not_affect_others(case, code: str, verdict: str, phrase: str) -> None:
     run = solve(case("[2]"), MISBEHAVING + code, f"{ANALYTIC}UNABLE", timeout=8.0 if code == "HANG" else 60.0)
     (cell,) = of(run, "misbehaving")
     assert (cell.verdict, cell.mode, cell.value) == (verdict, 0, None)
@@ -189,7 +189,7 @@ def test_what_was_solved_before_a_failure_still_counts(case) -> None:
 
 
 @pytest.mark.slow
-def test_rows_come_as_they_are_solved_and_say_what_is_left(case) -> None:
+def test_progress_counts_solved_and_remaining_rows(case) -> None:
     steps: list[Progress] = []
     with ThreadPoolExecutor(1) as executor:
         run = matrix_runs.solve(
@@ -212,7 +212,7 @@ def test_processes_and_threads_agree(case, at_rest: Run) -> None:
     ]
 
 
-def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
+def test_a_speed_without_steady_state_affects_its_own_cells_only(case) -> None:
     """Stretching resonates with the rotation where γ = α π/2: past it nothing holds the beam together."""
     fast, other = case("[0, 1600]"), case("[0]", "rest", "beside")
     with ThreadPoolExecutor(2) as executor:
@@ -235,7 +235,7 @@ def test_a_speed_without_steady_state_costs_its_own_cells(case) -> None:
     assert summary.status(run) == FAILED
 
 
-def test_more_modes_than_there_are_cost_the_case(case) -> None:
+def test_more_modes_than_the_blade_has_fail_the_case(case) -> None:
     many = case("[0]", 'motions = ["edgewise", "flapwise"]', 'motions = ["torsion"]')  # without rotary inertia: none
     run = solve(many, f"{ANALYTIC}GOOD")
     assert {(c.verdict, c.reason) for c in run.cells} == {
@@ -244,7 +244,7 @@ def test_more_modes_than_there_are_cost_the_case(case) -> None:
 
 
 @pytest.mark.slow
-def test_results_survive_the_disk(at_rest: Run, tmp_path: Path) -> None:
+def test_results_are_read_as_written(at_rest: Run, tmp_path: Path) -> None:
     path = tmp_path / "results.jsonl"
     results_file.write(path, at_rest)
     assert results_file.read(path) == at_rest

@@ -44,7 +44,7 @@ def verdicts(cells: list, quantity: str = "frequency") -> list[str]:
     return [c.verdict for c in cells if c.quantity == quantity]
 
 
-def test_core_itself_passes() -> None:
+def test_the_solver_itself_passes() -> None:
     cells = reported(lambda a: a)
     assert [(c.mode, c.quantity, c.verdict) for c in cells] == [
         (mode, quantity, "pass") for mode in (1, 2) for quantity in ("frequency", "damping")
@@ -65,14 +65,14 @@ def test_coordinates_may_come_in_another_order_and_some_be_missing() -> None:
     assert {c.verdict for c in reported(fewer)} == {"pass"}
 
 
-def test_a_frequency_that_is_off_fails() -> None:
+def test_a_wrong_frequency_fails() -> None:
     faulty = reported(lambda a: replace(a, values=a.values * np.array([1.0, 1 + 1e-6])))
     assert verdicts(faulty) == ["pass", "fail"]
     assert verdicts(faulty, "damping") == ["pass", "pass"]
     assert "exceeds" in faulty[2].reason
 
 
-def test_a_damping_ratio_that_is_off_fails_though_the_frequency_is_right() -> None:
+def test_a_wrong_damping_ratio_fails() -> None:
     faulty = reported(lambda a: replace(a, values=1j * np.abs(a.values)))
     assert verdicts(faulty) == ["pass", "pass"]
     assert verdicts(faulty, "damping") == ["fail", "pass"]
@@ -82,7 +82,7 @@ def test_a_damping_ratio_that_is_off_fails_though_the_frequency_is_right() -> No
     assert "exceeds" in lag.reason
 
 
-def test_a_shape_like_no_other_has_no_partner() -> None:
+def test_a_wrong_shape_has_no_partner() -> None:
     faulty = reported(lambda a: replace(a, shapes=np.stack([a.shapes[0] + a.shapes[1], a.shapes[0] - a.shapes[1]])))
     assert verdicts(faulty) == verdicts(faulty, "damping") == ["fail", "fail"]
     assert "no partner: its most similar mode" in faulty[0].reason
@@ -113,7 +113,7 @@ def test_spurious_modes_are_a_failure() -> None:
 @pytest.mark.parametrize(
     ("kind", "verdict"), [("crashed", "fail"), ("timed out", "inconclusive"), ("not installed", "not run")]
 )
-def test_no_answer_is_a_cell_that_says_so(kind, verdict: str) -> None:
+def test_a_missing_answer_is_a_cell_with_a_reason(kind, verdict: str) -> None:
     (cell,) = reported(lambda _: Failure(kind, "because"))
     assert (cell.verdict, cell.reason, cell.mode) == (verdict, "because", 0)
 
@@ -136,7 +136,7 @@ def test_codes_for_mechanisms_have_no_column_of_a_blade_unless_there_is_no_other
     assert (cell.verdict, cell.reason) == ("not applicable", "the code takes mechanisms, not blades")
 
 
-def test_what_goes_to_a_worker_comes_back_bit_for_bit() -> None:
+def test_answers_are_transferred_from_a_worker_bit_for_bit() -> None:
     m = library.mechanism("pitch-link").mechanism
     returned = wire.decode_mechanism(json.loads(json.dumps(wire.encode_mechanism(m))))
     for actual, expected in zip(m.bodies, returned.bodies, strict=True):
@@ -185,7 +185,7 @@ def test_a_code_for_mechanisms_without_the_base_class_is_refused() -> None:
         registry.code("southwell.tests.cases.verify.test_mechanism_matrix:UNADAPTED")
 
 
-def test_a_code_that_raises_is_one_cells_outcome() -> None:
+def test_an_exception_of_a_code_affects_its_own_cells_only() -> None:
     m = library.mechanism("pitch-link").mechanism
     (answer,) = worker.mechanism_answers(
         "southwell.tests.cases.verify.test_mechanism_matrix:CODE", [m], {}, Limits(60.0)
@@ -215,13 +215,13 @@ BAD = [
 
 
 @pytest.mark.parametrize(("old", "new", "match"), BAD, ids=[match for _, _, match in BAD])
-def test_what_makes_no_case_is_told(tmp_path: Path, old: str, new: str, match: str) -> None:
+def test_invalid_requests_are_reported(tmp_path: Path, old: str, new: str, match: str) -> None:
     path = write(tmp_path, "hinged-blade", (old, new))
     with pytest.raises(CaseError, match=match):
         mechanism.subject(mechanisms.read(path))
 
 
-def test_more_modes_than_a_mechanism_has_are_told(tmp_path: Path) -> None:
+def test_more_modes_than_a_mechanism_has_are_reported(tmp_path: Path) -> None:
     path = write(tmp_path, "hinged-blade", ("modes = 2", "modes = 3"))
     core = mechanism.subject(mechanisms.read(path)).references(())()
     failure = Failure("no reference", "compare.modes: 3: the mechanism has 2 modes: reduce it")

@@ -80,7 +80,7 @@ def test_frequencies_of_a_rotating_blade_do_not_depend_on_the_reference_axis(ele
 
 
 def test_an_axis_shifted_for_the_stiffness_only_is_detected() -> None:
-    """Negative control: stiffness about the other axis, mass not."""
+    """A seeded fault: stiffness about the other axis, mass not."""
     original = blade(np.random.default_rng(3))
     altered = replace(original, stiffness=about(original, OFFSET).stiffness)
     results = [mesh_modes(b, 12.0, 12, 8).frequencies for b in (original, altered)]

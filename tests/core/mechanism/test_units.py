@@ -136,7 +136,7 @@ def test_a_stiffness_that_overflows_is_refused() -> None:
 
 
 @pytest.mark.parametrize(("stiffness", "mass", "error"), [(5e-324, 1.0, EigenError), (1.0, 1e308, mb.MechanismError)])
-def test_extreme_numbers_are_refused_in_words(stiffness: float, mass: float, error: type[Exception]) -> None:
+def test_extreme_numbers_are_refused_with_a_message(stiffness: float, mass: float, error: type[Exception]) -> None:
     spring = mb.CoordinateSpring("swing.rz", stiffness)
     mechanism = mb.Mechanism(
         (mb.Body("bob", mb.inertia(mass, mass)),),

@@ -94,14 +94,14 @@ def test_unequal_springs_seen_from_the_rotating_frame_have_tied_frequencies() ->
         )
 
 
-def test_the_error_of_floquet_is_honest() -> None:
+def test_the_stated_error_of_floquet_covers_the_error() -> None:
     system = flapping(0.5)
     exact = hill(system).values.real
     result = floquet(system)
     assert np.abs(np.sort(result.values.real) - np.sort(exact)).max() <= 1e-11 + result.error.max()
 
 
-def test_refused() -> None:
+def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(PeriodicError, match="0 rad/s"):
         floquet(constant(np.eye(1), np.zeros((1, 1)), np.eye(1), 0.0, ("x",)))
     with pytest.raises(PeriodicError, match="no mass"):

@@ -54,7 +54,7 @@ def test_uncoupled_blades_seen_from_the_support() -> None:
     np.testing.assert_allclose(T[1] @ z[:3], (expm(A * time) @ start)[:3], rtol=1e-10)
 
 
-def test_refused() -> None:
+def test_invalid_arguments_are_refused() -> None:
     with pytest.raises(ValueError, match="at least 3"):
         mb.blades_of(2, [[0, 1]])
     with pytest.raises(ValueError, match="two groups"):

@@ -21,6 +21,7 @@ from southwell.references.scikit_fem.reissner import CODE
 from southwell.reports.cli.app import main
 from southwell.reports.shared.certain import certain, remarks
 from southwell.reports.shared.units import RAD_S
+from southwell.tests.support.units import random_blade
 
 
 def cable(EI: float) -> Blade:
@@ -37,30 +38,6 @@ def test_a_step_of_the_bending_stiffness_by_1e8_is_solved() -> None:
     np.testing.assert_allclose(frequencies, [6.201082, 11.192977], rtol=2e-6)
 
 
-def random_blade(seed: int) -> tuple[Blade, float]:
-    """Tables of one to eight intervals of any length, twisted and coned, from stiff to nearly a cable."""
-    r = np.random.default_rng(seed)
-    length, m = float(10 ** r.uniform(0.5, 2)), 2 + seed % 8
-    stations = np.sort(np.concatenate([[0.0, length], r.uniform(0.05, 0.95, m - 2) * length]))
-    mass = 10 ** r.uniform(0, 2) * np.linspace(1.0, r.uniform(0.1, 1.0), m)
-    first = 10 ** r.uniform(-0.3, 0.8)  # EI such that the first frequency at rest is about this, rad/s
-    EI = mass.mean() * length**4 * (first / 3.5) ** 2 * np.linspace(1.0, r.uniform(0.05, 1.0), m)
-    parts = [
-        uniform_blade("", length, 0.0, EA=e * 1e5 / length**2, GJ=e, EI_y=e, EI_z=r.uniform(1.0, 4.0) * e, mass=mu)
-        for e, mu in zip(EI, mass, strict=True)
-    ]
-    blade = Blade(
-        name=f"random {seed}",
-        stations=stations,
-        stiffness=np.array([p.stiffness[0] for p in parts]),
-        mass=np.array([p.mass[0] for p in parts]),
-        twist=np.linspace(r.uniform(-0.3, 0.3), 0.0, m),
-        hub_radius=float(r.uniform(0.0, 0.1) * length),
-        precone=float(r.uniform(-0.05, 0.05)),
-    )
-    return blade, float(r.choice([0.0, 0.3, 1.0, 3.0]) * first)
-
-
 def truth(blade: Blade, omega: float, count: int) -> tuple[np.ndarray, np.ndarray]:
     """Frequencies on a very fine graded mesh, and their relative change when its elements are halved."""
     nodes = grading.coarse(blade, 300, omega)
@@ -72,7 +49,7 @@ def truth(blade: Blade, omega: float, count: int) -> tuple[np.ndarray, np.ndarra
 
 @pytest.mark.parametrize("seed", range(8))
 def test_uncertainties_cover_the_errors_of_random_blades(seed: int) -> None:
-    blade, omega = random_blade(seed)
+    blade, omega = random_blade(np.random.default_rng(seed))
     exact, unsure = truth(blade, omega, 5)
     solution = solve.modes(blade, omega, count=5)
     assert solution.uncertainty.max() <= 1e-6
@@ -186,7 +163,7 @@ def test_the_uncertainty_without_convergence_is_three_times_the_spread(f: tuple[
 
 
 def test_the_mesh_has_nodes_at_stations_and_is_fine_at_the_root() -> None:
-    blade, _ = random_blade(6)
+    blade, _ = random_blade(np.random.default_rng(6))
     nodes = grading.coarse(blade, 10, 0.0)
     assert {round(s, 9) for s in blade.stations} <= {round(s, 9) for s in nodes}
     assert np.diff(nodes).max() <= blade.length / 10 * (1 + 1e-9)

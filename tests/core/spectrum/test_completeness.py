@@ -70,7 +70,7 @@ def test_a_count_that_splits_a_double_mode_is_accepted(omega: float, count: int)
     [solve.modes, solve.mesh_modes, lambda blade, omega, *rest: next(solve.sweep(blade, [omega], *rest))],
     ids=["modes", "mesh_modes", "sweep"],
 )
-def test_no_answer_without_the_proof(answer: Callable[..., Modes], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_no_answer_without_a_complete_count(answer: Callable[..., Modes], monkeypatch: pytest.MonkeyPatch) -> None:
     """With a projection that loses its third largest value, every entry point raises."""
     whole = lanczos.eigh
 

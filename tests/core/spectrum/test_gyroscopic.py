@@ -46,7 +46,7 @@ def test_a_shaft_between_two_critical_speeds_is_unstable() -> None:
         modes(shaft(2.0), 1.2 * CRITICAL, count=2)
 
 
-def test_a_missing_mode_is_noticed(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_missing_mode_is_detected(monkeypatch: pytest.MonkeyPatch) -> None:
     """Whether it is the one with negative energy or another."""
     complete = gyroscopic._nearest_zero
     for missing in (0, 1, 2):

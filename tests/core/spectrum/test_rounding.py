@@ -81,7 +81,7 @@ def test_the_residual_of_the_eigensolver_is_included(monkeypatch: pytest.MonkeyP
     assert (rounding.rounding(linear, off) > 1e-5).all()
 
 
-def test_the_command_prints_it(capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_prints_the_rounding(capsys: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(SystemExit, match=r"^0$"):
         main(["mechanism", "pitch-link"])
     assert "± rounding" in capsys.readouterr().out

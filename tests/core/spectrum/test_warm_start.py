@@ -109,7 +109,7 @@ def test_modes_that_the_start_does_not_contain_are_reported_and_computed(lumped:
 
 
 @pytest.mark.numerical
-def test_the_count_alone_reports_them(lumped: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_count_reports_missing_modes(lumped: Mesh, monkeypatch: pytest.MonkeyPatch) -> None:
     correct = solve_mesh(lumped, 0.0, Options(6))
     monkeypatch.setattr(completeness, "check_complete", lambda *_: None)
     altered = solve_mesh(lumped, 0.0, Options(6), replace(correct.start, basis=only_flap(lumped)))

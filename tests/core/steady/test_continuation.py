@@ -67,7 +67,7 @@ def test_a_rod_past_its_largest_speed_is_unstable() -> None:
         modes(rod, 2.0, count=2)
 
 
-def test_a_blade_that_buckles_at_rest_is_refused_without_a_word_of_centrifugal_force() -> None:
+def test_the_refusal_of_a_blade_buckled_at_rest_does_not_mention_centrifugal_force() -> None:
     """A column of 10 m under its weight buckles at m g L³/EI = 7.837 (Greenhill 1881)."""
     stiffness, mass = section_stiffness(1e9, 1e4, 1e4, 1e4), section_mass(1.0, 1e-4, 1e-4)
     column = Blade("column", np.array([0.0, 10.0]), np.repeat(stiffness, 2, 0), np.repeat(mass, 2, 0), np.zeros(2))

@@ -12,6 +12,7 @@ from southwell.cases.input import library
 from southwell.core import solve
 from southwell.core.blade import Blade
 from southwell.core.element.discretize import Mass, discretize
+from southwell.core.element.measures import Measure
 from southwell.core.element.mesh import JointLink
 from southwell.core.mechanism.description import Body, Load, Mechanism, MechanismError, Motion, inertia
 from southwell.core.mechanism.joints import Joint
@@ -56,15 +57,17 @@ def test_every_blade_with_consistent_mass(name: str) -> None:
     assert_agreement(BLADES[name].blade, float(BLADES[name].speeds[-1]), elements)
 
 
-@pytest.mark.parametrize("mass", ["consistent", "half_end"])
+@pytest.mark.parametrize(("mass", "stiffness"), [("consistent", "corotational"), ("half_end", "body_fixed")])
 @pytest.mark.parametrize("root", [None, *ROOTS])
 @pytest.mark.parametrize("make", [tapered, curved])
-def test_loads_gravity_and_joints_at_the_root(make: Callable[[], Blade], root: str | None, mass: Mass) -> None:
+def test_loads_gravity_and_joints_at_the_root(
+    make: Callable[[], Blade], root: str | None, mass: Mass, stiffness: Measure
+) -> None:
     """All at once on a blade that is twisted, and on one that is swept, prebent, coned, pitched, coupled and sheared."""
     blade = make() if root is None else replace(make(), root=np.array(ROOTS[root]))
     weight = blade.mass[:, 0, 0][:, None]
     load, gravity = weight * [1.0, -2.0, 3.0], np.array([3.0, 5.0, -9.81])
-    assert_agreement(blade, 2.5, 10, gravity, load=load, mass=mass)
+    assert_agreement(blade, 2.5, 10, gravity, load=load, mass=mass, stiffness=stiffness)
 
 
 def test_a_link_of_a_joint_has_one_coordinate() -> None:

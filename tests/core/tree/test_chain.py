@@ -7,7 +7,7 @@ from scipy.optimize import brentq
 from southwell.core.blade import uniform_blade, without_rotary_inertia
 from southwell.core.effects import Effects
 from southwell.core.element.discretize import discretize
-from southwell.core.solve import chain_modes, mesh_modes, modes, sweep
+from southwell.core.solve import chain_modes, mesh_modes, modes
 from southwell.core.space import spatial as sp
 from southwell.core.spectrum import eigen, modal
 from southwell.core.spectrum.mesh_solver import balance
@@ -62,29 +62,6 @@ def test_fourth_order_where_the_steady_strain_is_large() -> None:
     """Slenderness 70, γ = 10: a steady stretch of 1 %. Elements that neglect their stretch are of second order."""
     f = np.array([mesh_modes(yoo_shin(0.0), 10.0, n, 4).frequencies for n in (10, 20, 40)])
     assert (np.log2(np.abs((f[0] - f[1]) / (f[1] - f[2]))) > 3.3).all()
-
-
-def test_errors_against_exact_values_are_of_fourth_order() -> None:
-    errors = [np.abs(planes(PARK, 10.0, n)[0][:2] / EXACT_EDGEWISE[:2] - 1) for n in (10, 20)]
-    assert (np.log2(errors[0] / errors[1]) > 3.7).all()
-
-
-@pytest.mark.parametrize("measure", ["corotational", "body_fixed"])
-@pytest.mark.parametrize("mass", ["consistent", "half_end"])
-@pytest.mark.parametrize(
-    ("blade", "omega", "elements"),
-    [(PARK, 10.0, 20), (PARK, 0.0, 8), (tapered(), 2.0, 8), (curved(), 1.5, 6), (yoo_shin(0.1), 10.0, 10)],
-    ids=["cantilever", "at rest", "tapered", "curved", "slender 70"],
-)
-def test_banded_chain_and_dense_mechanism_agree(blade, omega, elements, mass, measure) -> None:
-    """One discretisation, two formulations: twists of the bodies with Lanczos, relative coordinates with B and LAPACK."""
-    body = discretize(blade, elements, mass, measure)
-    dense = modal.linearize(mechanism(body, omega))
-    scale = np.abs(dense.K).max()
-    assert np.abs(dense.K - dense.K.T).max() < 1e-12 * scale
-    assert np.abs(dense.C + dense.C.T).max() <= 1e-12 * max(np.abs(dense.C).max(), 1.0)
-    banded = mesh_modes(blade, omega, elements, 10, mass=mass, stiffness=measure)
-    np.testing.assert_allclose(modal.modes(dense, 10).frequencies, banded.frequencies, rtol=1e-10)
 
 
 @pytest.mark.parametrize("elements", [2000, pytest.param(20_000, marks=pytest.mark.nightly)])
@@ -176,14 +153,6 @@ def test_no_steady_state_beyond_the_axial_critical_speed() -> None:
         (blade_state.SteadyStateError, eigen.UnstableError), match=r"no steady state at 112 rad/s.*lower the loads"
     ):
         mesh_modes(yoo_shin(0.0), 112.0, 20, 2)
-
-
-@pytest.mark.parametrize("speeds", [(0.0, 1.0, 2.0, 3.0, 4.0), (4.0, 0.0, 4.0, -4.0)], ids=["rising", "back and forth"])
-def test_a_sweep_agrees_with_single_speeds(speeds) -> None:
-    """Extrapolated guesses lead Newton to the same states, in any order of the speeds."""
-    results = [m.frequencies for m in sweep(curved(), speeds, 12, 6)]
-    alone = [mesh_modes(curved(), omega, 12, 6).frequencies for omega in speeds]
-    np.testing.assert_allclose(results, alone, rtol=1e-10)
 
 
 def test_gravity_prestresses_by_azimuth() -> None:

@@ -105,7 +105,7 @@ def test_a_mode_has_the_frequency_of_the_motion_that_names_it() -> None:
     assert len(edge) == 3
 
 
-def test_what_has_no_constant_modes_is_refused() -> None:
+def test_rotors_without_constant_modes_are_refused() -> None:
     full_machine = machine(small(blades=2), SMALL)
     with pytest.raises(PeriodicError, match="two blades vary with the azimuth"):
         assemble(full_machine, OMEGA)

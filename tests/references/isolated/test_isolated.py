@@ -49,7 +49,7 @@ def test_the_cache_folder_can_be_set(cache: Path, monkeypatch: pytest.MonkeyPatc
     assert isolated.cache() == Path.home() / ".cache" / "southwell"
 
 
-def test_other_pins_use_another_environment() -> None:
+def test_other_pinned_versions_use_another_environment() -> None:
     assert ECHO.folder != replace(ECHO, requires=("one==1.1",)).folder
     assert ECHO.folder == replace(ECHO, module="other").folder
 
@@ -61,7 +61,7 @@ def test_every_requirement_is_pinned() -> None:
         assert len(lines) == len(environment.requires) + len(environment.bare)
 
 
-def test_an_incomplete_environment_does_not_count() -> None:
+def test_an_incomplete_environment_is_not_installed() -> None:
     assert ECHO.version() is None
     made(ECHO)
     assert ECHO.version() == "2.5"
@@ -175,7 +175,7 @@ def test_the_command_line_installs(monkeypatch: pytest.MonkeyPatch, capsys: pyte
     assert "No matching distribution found for ic-sharpy" in capsys.readouterr().err
 
 
-def test_what_runs_in_environments_imports_nothing_of_this_package() -> None:
+def test_modules_run_in_environments_import_nothing_of_this_package() -> None:
     for name in ("answer", *(environment.module for environment in ENVIRONMENTS.values())):
         path = Path(isolated.__file__).with_name(f"{name}.py")
         tree = ast.parse(path.read_text(encoding="utf-8"))

@@ -16,16 +16,12 @@ from southwell.core.blade import Blade, uniform_blade, without_rotary_inertia
 from southwell.core.sampling import mass_at, stiffness_at
 from southwell.references.isolated.sharpy import CODE, _shapes, _unpacked, request
 from southwell.references.protocol.interface import CodeError
-from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
+from southwell.tests.support.beams import PARK, TIP_MASS, curved, tapered, yoo_shin
 
 Array = NDArray[Any]
 
 needs_sharpy = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
 
-TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
-TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
-TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
-TIP_MASS[[3, 5], [3, 5]] += 10.0
 ARCS = {p.name: p.blade for p in PROPERTIES if p.name in ("sweep", "prebend")}
 
 
@@ -159,9 +155,3 @@ def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: st
     assert (CODE.unsupported(blade) or "").startswith(reason)
     with pytest.raises(CodeError, match=reason):
         CODE.solve(blade, 0.0, 5, 4)
-
-
-def test_too_many_elements_are_an_error() -> None:
-    finest = CODE.max_elements or 0
-    with pytest.raises(CodeError, match=f"elements: {finest + 1}"):
-        CODE.solve(PARK, 10.0, finest + 1, 4)

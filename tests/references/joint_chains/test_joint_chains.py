@@ -1,4 +1,4 @@
-"""Drake's and MuJoCo's chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
+"""Joint chains against core (one discretisation, to rounding) and, stage by stage, against Pinocchio's."""
 
 from collections.abc import Callable
 from dataclasses import replace
@@ -19,14 +19,9 @@ from southwell.references.joint_chains import mujoco as mujoco_chain
 from southwell.references.joint_chains import pinocchio as pinocchio_chain
 from southwell.references.joint_chains.joint_chain import ChainModel
 from southwell.references.protocol.interface import CodeError
-from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
+from southwell.tests.support.beams import PARK, TIP_MASS, curved, tapered, yoo_shin
 
 Array = NDArray[Any]
-
-TIP_MASS = np.diag([40.0, 40.0, 40.0, 9.0, 1.0, 8.0])
-TIP_MASS[:3, 3:] = [[0, 0, -20.0], [0, 0, 0], [20.0, 0, 0]]  # half a metre off along y
-TIP_MASS[3:, :3] = TIP_MASS[:3, 3:].T
-TIP_MASS[[3, 5], [3, 5]] += 10.0
 
 
 def needs(module: str, code: Any) -> pytest.MarkDecorator:
@@ -41,9 +36,14 @@ both = pytest.mark.parametrize(
     ],
 )
 
+chains = pytest.mark.parametrize(
+    "code",
+    [*both.args[1], pytest.param(pinocchio_chain.CODE, id="pinocchio", marks=needs("pinocchio", pinocchio_chain.CODE))],
+)
+
 
 @pytest.mark.slow
-@both
+@chains
 @pytest.mark.parametrize(
     ("blade", "omega"),
     [
@@ -98,27 +98,11 @@ def test_every_stage_agrees_with_pinocchio(make: Callable[[Mesh], ChainModel], r
         np.testing.assert_allclose(actual, expected, atol=rtol * np.abs(expected).max(), rtol=0)
 
 
-@both
-def test_the_same_call_gives_the_same_answer_and_prints_nothing(code: Any, capfd: pytest.CaptureFixture[str]) -> None:
-    first = code.solve(tapered(), 2.0, 8, 4)
-    code.solve(PARK, 10.0, 5, 4)
-    second = code.solve(tapered(), 2.0, 8, 4)
-    np.testing.assert_array_equal(first.frequencies, second.frequencies)
-    np.testing.assert_array_equal(first.shapes, second.shapes)
-    assert capfd.readouterr().out == ""
-
-
-@both
+@chains
 @pytest.mark.parametrize(("gamma", "reason"), [(100.0, "no stable steady state"), (1e4, "no (stable )?steady state")])
 def test_no_steady_state_at_high_speed(code: Any, gamma: float, reason: str) -> None:
     with pytest.raises(CodeError, match=reason):
         code.solve(yoo_shin(0.1), gamma, 6, 4)
-
-
-@both
-def test_too_many_elements_are_an_error(code: Any) -> None:
-    with pytest.raises(CodeError, match="elements: 81"):
-        code.solve(PARK, 10.0, 81, 4)
 
 
 @both

@@ -20,7 +20,7 @@ def sent(value: TurbineModes | Fingerprint) -> Any:
     return json.loads(json.dumps(wire.encode(value)))
 
 
-def test_modes_of_a_turbine_come_back_as_they_are() -> None:
+def test_modes_of_a_turbine_are_transferred_unchanged() -> None:
     back = turbine_modes(sent(MODES), 3, 21)
     np.testing.assert_array_equal(back.values, MODES.values)
     np.testing.assert_array_equal(back.shapes, MODES.shapes)
@@ -51,7 +51,7 @@ def test_more_modes_than_requested_are_refused() -> None:
         turbine_modes(sent(MODES), 2, 21)
 
 
-def test_a_fingerprint_comes_back_as_it_is() -> None:
+def test_a_fingerprint_is_transferred_unchanged() -> None:
     assert fingerprint(None) is None
     for value in (FLEXIBLE, replace(FLEXIBLE, flexibility=None, inertia=None)):
         assert fingerprint(sent(value)) == value

@@ -9,7 +9,7 @@ from southwell.references.protocol.description import describe
 from southwell.references.protocol.registry import UnknownCodeError
 
 
-def test_it_serves_every_start() -> None:
+def test_one_forker_serves_every_start() -> None:
     prepared = launch.prepare()
     for _ in range(2):
         (description_,) = describe(["exact-beam"])
@@ -18,7 +18,7 @@ def test_it_serves_every_start() -> None:
     assert prepared.process.poll() is None
 
 
-def test_a_killed_one_is_replaced() -> None:
+def test_a_killed_forker_is_replaced() -> None:
     prepared = launch.prepare()
     prepared.process.kill()
     prepared.process.wait()
@@ -27,7 +27,7 @@ def test_a_killed_one_is_replaced() -> None:
     assert launch.prepare() is not prepared
 
 
-def test_it_does_not_serve_a_start_in_other_surroundings(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_changed_environment_or_folder_replaces_the_forker(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     prepared = launch.prepare()
     (tmp_path / "elsewhere.py").write_text("CODE = 1\n")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))

@@ -59,7 +59,7 @@ def done(folder: Path) -> dict[Misdeed, tuple[Description, list[Modes | Failure]
 
 
 @pytest.mark.parametrize("misdeed", TABLE, ids=lambda m: f"{m.when}-{m.name}")
-def test_a_misdeed_affects_its_cells_only_and_is_reported(misdeed: Misdeed, done: dict) -> None:
+def test_a_failure_affects_its_runs_only_and_is_reported(misdeed: Misdeed, done: dict) -> None:
     message, replies = done[misdeed]
     assert "".join("F" if isinstance(answer, Failure) else "M" for answer in replies) == LEFT[misdeed.lost], replies
     assert not message.failure or message.name.startswith("mis")
@@ -69,7 +69,7 @@ def test_a_misdeed_affects_its_cells_only_and_is_reported(misdeed: Misdeed, done
         assert len(failure.reason) <= 400
 
 
-def test_nothing_is_left_running(done: dict) -> None:
+def test_no_process_is_left_running(done: dict) -> None:
     remainder = []
     for environ in Path("/proc").glob("[0-9]*/environ"):
         try:

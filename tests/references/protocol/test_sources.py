@@ -50,7 +50,7 @@ def test_a_library_s_version_changes_the_digest(package: Path, monkeypatch: pyte
     assert digest() != before
 
 
-def test_what_a_run_writes_does_not(package: Path) -> None:
+def test_files_written_by_a_run_do_not_change_the_digest(package: Path) -> None:
     before = digest()
     (package / "reports/out").mkdir()
     (package / "reports/out/report.md").write_text("# Report\n")

@@ -48,7 +48,7 @@ def test_a_damaged_answer_is_found_and_removed(file: Path) -> None:
     assert kept.get("b")[0] == b"2.0"
 
 
-def test_prune_removes_what_is_old(file: Path) -> None:
+def test_prune_removes_old_answers(file: Path) -> None:
     kept = Store(file)
     kept.put("a", "x", b"1.0")
     (answer,) = kept.kept()
@@ -86,7 +86,7 @@ def test_a_folder_that_others_can_write_to_has_no_store(tmp_path: Path, monkeypa
         store.users()
 
 
-def test_a_file_that_is_no_store(file: Path) -> None:
+def test_a_file_of_another_format_is_refused(file: Path) -> None:
     file.write_text("not a database, " * 100)
     with pytest.raises(OSError, match="not a database"):
         Store(file)

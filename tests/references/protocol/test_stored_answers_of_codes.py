@@ -2,7 +2,6 @@
 
 import json
 import platform
-import sqlite3
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -52,7 +51,7 @@ def ask(**changed: Any) -> list[Answer]:
     return answers(**(given | changed))
 
 
-def test_only_what_is_missing_is_asked_for(requests: Requests) -> None:
+def test_only_missing_answers_are_requested(requests: Requests) -> None:
     ask(runs=RUNS[:1])
     more = ask(runs=[RUNS[1], RUNS[0], RUNS[2]])
     assert requests == [[[0.0, 10, 3]], [[2.0, 10, 3], [0.5, 20, 3]]]
@@ -76,7 +75,7 @@ def test_only_what_is_missing_is_asked_for(requests: Requests) -> None:
         {"version": "1.1"},
     ],
 )
-def test_every_part_of_the_question_counts(requests: Requests, changed: dict[str, Any]) -> None:
+def test_every_part_of_the_question_changes_the_key(requests: Requests, changed: dict[str, Any]) -> None:
     request = {"runs": [RUNS[1]]}
     ask(**request)
     ask(**request)
@@ -92,7 +91,7 @@ def test_every_part_of_the_question_counts(requests: Requests, changed: dict[str
         lambda m: m.setattr(platform, "machine", lambda: "another machine"),
     ],
 )
-def test_source_and_machine_count(
+def test_sources_and_machine_change_the_key(
     requests: Requests, monkeypatch: pytest.MonkeyPatch, change: Callable[[pytest.MonkeyPatch], None]
 ) -> None:
     ask()
@@ -104,7 +103,9 @@ def test_source_and_machine_count(
 @pytest.mark.parametrize(
     "changed", [{"limits": replace(REUSE, reuse=False)}, {"version": ""}, {"name": "elsewhere:CODE"}]
 )
-def test_what_is_never_stored(requests: Requests, changed: dict[str, Any]) -> None:
+def test_answers_without_version_or_of_other_packages_are_not_stored(
+    requests: Requests, changed: dict[str, Any]
+) -> None:
     """Answers when reuse is not wanted, of a code of unknown version, and of a code that is not part of this package."""
     ask(**changed)
     ask(**changed)
@@ -124,18 +125,6 @@ def test_failures_are_not_stored(requests: Requests, monkeypatch: pytest.MonkeyP
     assert requests == [[list(run) for run in RUNS]]
 
 
-def test_a_damaged_answer_is_computed_again(requests: Requests, tmp_path: Path) -> None:
-    before = ask()
-    base = sqlite3.connect(tmp_path / "cache" / store.NAME, isolation_level=None)
-    base.execute("update answers set value = replace(value, '.', '')")
-    after = ask()
-    assert len(requests) == 2
-    for a, b in zip(before, after, strict=True):
-        assert isinstance(a, Modes)
-        assert isinstance(b, Modes)
-        np.testing.assert_array_equal(a.frequencies, b.frequencies)
-
-
 def test_the_time_of_a_stored_answer_is_not_reported_as_measured(requests: Requests) -> None:
     first, second = ask(runs=RUNS[:1]), ask(runs=RUNS[:1])
     assert isinstance(first[0], Modes)
@@ -143,7 +132,7 @@ def test_the_time_of_a_stored_answer_is_not_reported_as_measured(requests: Reque
     assert (first[0].seconds, np.isnan(second[0].seconds)) == (0.25, True)
 
 
-def test_an_array_is_made_once_for_each_question(requests: Requests, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_an_array_is_computed_once_for_each_question(requests: Requests, monkeypatch: pytest.MonkeyPatch) -> None:
     made: list[float] = []
 
     def array(x: float, label: str = "array") -> Any:

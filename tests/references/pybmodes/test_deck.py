@@ -65,7 +65,7 @@ def test_bmodes_files_are_read_by_pybmodes(tmp_path: Path) -> None:
     assert len(given.files) == 2
 
 
-def test_what_pybmodes_ignores_is_declined() -> None:
+def test_properties_that_pybmodes_ignores_are_declined() -> None:
     blade, _ = read(EXAMPLE, replace(NREL, pitch=0.1))
     assert "pitch" in str(CODE.unsupported(blade))
     with pytest.raises(CodeError, match="no deck is given"):

@@ -19,7 +19,7 @@ from southwell.references.pybmodes import beam as pybmodes_beam
 from southwell.references.pybmodes.beam import CODE
 from southwell.references.pybmodes.input_file import write
 from southwell.tests.support.analytic import ROOTS
-from southwell.tests.support.beams import PARK, A, E, I, curved, tapered, yoo_shin
+from southwell.tests.support.beams import PARK, curved, tapered, yoo_shin
 from southwell.tests.support.straight_blades import kinked
 
 pytestmark = pytest.mark.skipif(CODE.version() is None, reason=f"not installed: {CODE.hint}")
@@ -47,12 +47,6 @@ def core(blade: Blade, omega: float, count: int) -> Array:
 def shaft(I_y: float, I_z: float) -> Blade:
     """A beam with torsional frequencies (k − ½) π √(GJ / I_x) at zero speed, far below those of bending."""
     return uniform_blade("shaft", 1.0, 0.1, EA=1e4, GJ=1e-2, EI_y=1e2, EI_z=1e2, mass=1.0, I_y=I_y, I_z=I_z)
-
-
-def test_the_cantilever_at_zero_speed_is_the_closed_form() -> None:
-    """Euler–Bernoulli, cos βL cosh βL = −1: fourth order, so 40 elements give the third pair to 1e-6."""
-    exact = np.square(ROOTS[:3]) * np.sqrt(E * I / (3000.0 * A)) / 36.0
-    np.testing.assert_allclose(frequencies(PARK, 0.0, 40), np.repeat(exact, 2), rtol=2e-6)
 
 
 @pytest.mark.parametrize(
@@ -173,7 +167,7 @@ def test_an_unsupported_blade_is_declined_with_a_reason(blade: Blade, reason: st
 
 
 @pytest.mark.slow
-def test_why_mass_centres_off_the_axis_are_declined(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_pybmodes_is_wrong_for_mass_centres_off_the_axis(monkeypatch: pytest.MonkeyPatch) -> None:
     """Core agrees with the expected value of the reproducer, an independent method; pyBModes is off by 1.5 %.
 
     Both are without Coriolis terms, for a beam with its mass 0.05 m off the axis, at 60 rpm. Only in pyBModes the
@@ -202,10 +196,6 @@ def test_why_mass_centres_off_the_axis_are_declined(monkeypatch: pytest.MonkeyPa
     np.testing.assert_allclose(they.Exact(2 * np.pi, 4 * they.EI).frequencies()[:5], actual, rtol=1e-4)
 
 
-def test_the_other_blades_of_these_tests_are_accepted() -> None:
-    assert [CODE.unsupported(b) for b in (PARK, tapered(), yoo_shin(0.1), WINDPACT, shaft(1e-3, 0.0))] == [None] * 5
-
-
 def test_no_steady_state_at_high_speed_is_reported() -> None:
     """A section thicker than wide is unstable in torsion: Ω² (I_y − I_z) above (π/2)² GJ / L²."""
     assert frequencies(shaft(9e-4, 1e-4), 5.0, 10, 1)[0] > 0
@@ -228,13 +218,9 @@ def test_unused_entries_of_the_input_file(tmp_path: Path) -> None:
     assert (half < plain).all()
 
 
-def test_it_leaves_no_files_and_is_repeatable(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+def test_no_files_are_left_behind(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.setattr("tempfile.tempdir", str(tmp_path))
-    first = CODE.solve(tapered(), 2.0, 20, 4)
     CODE.solve(PARK, 10.0, 5, 4)
-    second = CODE.solve(tapered(), 2.0, 20, 4)
-    np.testing.assert_array_equal(first.frequencies, second.frequencies)
-    np.testing.assert_array_equal(first.shapes, second.shapes)
     assert os.listdir(tmp_path) == []
 
 
@@ -278,7 +264,7 @@ ROUND = uniform_blade("round", 1.0, 0.0, EA=1e6, GJ=1e3, EI_y=1.0, EI_z=1.0, mas
         ),  # a coarse mesh would be too fine to be solved directly
     ],
 )
-def test_double_frequencies_are_expected(blade: Blade, omega: float, doubled: bool) -> None:
+def test_blades_with_double_frequencies_are_recognised(blade: Blade, omega: float, doubled: bool) -> None:
     assert pybmodes_beam._doubled(blade, omega, 6) == doubled
 
 

@@ -111,7 +111,7 @@ def test_section_weights_integrate_a_tapered_twisted_section(layer: int) -> None
     assert y @ W @ y + z @ W @ z == pytest.approx(c * t * (c**2 + t**2) / 12, rel=1e-12)
 
 
-def test_its_substructure_is_rejected() -> None:
+def test_the_substructure_of_calculix_is_rejected() -> None:
     """CalculiX 2.20 fixes the nodes that are not retained instead of eliminating them: no coupling, no rigid motions.
 
     If a later version is correct, this segment equals that of its stored matrices.
@@ -137,7 +137,7 @@ def test_its_substructure_is_rejected() -> None:
         assert f[0, 0] == pytest.approx(length / (SQUARE.young * SIDE**2), rel=1e-6)
 
 
-def test_errors_name_what_is_wrong(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_errors_name_the_cause(monkeypatch: pytest.MonkeyPatch) -> None:
     bricks = twisted(2, (2, 2))
     with pytest.raises(CodeError, match=r"across: \(1, 1\) elements"):
         calculix.modes(square_bar(1.0, 20, across=1), SQUARE, 0.0, 2, clamped_section(0.0))

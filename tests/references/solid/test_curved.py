@@ -110,7 +110,7 @@ def test_sections_of_a_square_bar() -> None:
 
 
 @pytest.mark.slow
-def test_the_way_a_slices_neighbours_are_loaded_and_its_length_do_not_matter() -> None:
+def test_sections_do_not_depend_on_length_or_loads_of_neighbouring_slices() -> None:
     """The remainder falls by more than ten per chord of neighbours; twice as many elements change less than 5e-4."""
 
     def off(a: np.ndarray, b: np.ndarray) -> float:
@@ -143,7 +143,7 @@ def test_the_file_has_the_sections_of_the_solid() -> None:
     assert (np.abs((result / scale)[:, TORSION, BEND_Y]) > 0.3).all()
 
 
-def test_the_root_transmits_the_wrench_that_the_tip_is_given() -> None:
+def test_the_root_transmits_the_wrench_at_the_tip() -> None:
     """The tractions at the root have the resultants of unit forces and moments about the root."""
     force = inside(CURVED, 0.0, ACROSS).force
     position = CURVED.bricks(np.array([0.0, 0.01]), ACROSS)
@@ -203,7 +203,7 @@ def whole(omega: float) -> np.ndarray:
 
 @pytest.mark.slow
 @pytest.mark.parametrize("omega", [0.0, 10.0])
-def test_the_beam_is_the_solid(omega: float) -> None:
+def test_frequencies_of_beam_and_solid_agree(omega: float) -> None:
     """Six modes within 0.1 %: the difference that remains is that of beam theory."""
     np.testing.assert_allclose(solve.mesh_modes(case(), omega, 80, 6).frequencies, whole(omega), rtol=1e-3)
 
@@ -256,7 +256,7 @@ def test_frequencies_converge_with_the_fourth_power() -> None:
     ],
     ids=["bend–twist coupling", "extension–bending coupling", "sweep", "prebend", "twist"],
 )
-def test_a_beam_with_a_wrong_sign_is_not_the_solid(change) -> None:
+def test_a_wrong_sign_in_the_beam_is_detected_by_the_solid(change) -> None:
     off = solve.mesh_modes(change(case()), 10.0, 80, 6).frequencies / whole(10.0) - 1.0
     assert np.abs(off).max() > 5e-3, off
 

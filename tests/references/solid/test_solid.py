@@ -130,7 +130,7 @@ def test_coriolis_forces() -> None:
     assert solids == pytest.approx(beams, rel=2e-3)
 
 
-def test_errors_name_what_is_wrong() -> None:
+def test_errors_name_the_cause() -> None:
     bricks = twisted(2, (2, 2))
     with pytest.raises(CodeError, match="clamp: fixes 0 displacements"):
         hexahedra.modes(bricks, STEEL, 0.0, 2, clamped_section(ROOT + 0.1))

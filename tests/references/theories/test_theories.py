@@ -73,7 +73,7 @@ def test_steady_stretch_of_a_uniform_blade() -> None:
 
 
 @pytest.mark.parametrize("code", [YOO_SHIN, EXACT], ids=ids)
-def test_past_the_speed_at_which_the_blade_pulls_itself_apart(code) -> None:
+def test_no_steady_state_above_the_speed_of_unbounded_stretch(code) -> None:
     critical = 70.0 * np.pi / 2
     code.solve(slender(), 0.999 * critical, FINE, 4)
     with pytest.raises(CodeError, match=r"no stable steady state|no steady stretch"):
@@ -125,7 +125,7 @@ def test_the_papers_cantilever(code, edgewise: tuple[str, ...], flapwise: tuple[
             assert round(frequency, len(text.partition(".")[2])) == float(text)
 
 
-def test_torsion_takes_a_little_from_flapwise_modes() -> None:
+def test_torsion_lowers_flapwise_modes_slightly() -> None:
     """The sections' inertia couples the two, 2 Ω I_y φ β̇, and the lower of two coupled frequencies gives way: by some 1e-8."""
     stiff, soft = (family(EXACT.solve(park(GJ), 10.0, FINE, 12), Z)[:3] for GJ in (np.inf, 1.08e4))
     change = soft / stiff - 1
@@ -136,7 +136,7 @@ def test_torsion_takes_a_little_from_flapwise_modes() -> None:
 # ------------------------------------------------------------------------------------------------------------ each other
 
 
-def test_yoo_shin_tends_to_assumed_modes_as_the_blade_gets_slender() -> None:
+def test_yoo_shin_tends_to_assumed_modes_for_slender_blades() -> None:
     """The Coriolis coupling falls off with 1/EA."""
 
     def gap(slenderness: float) -> np.ndarray:
@@ -150,7 +150,7 @@ def test_yoo_shin_tends_to_assumed_modes_as_the_blade_gets_slender() -> None:
     assert gap(1e4).max() < 1e-6
 
 
-def test_exact_beam_tends_to_yoo_shin_as_the_blade_gets_slender() -> None:
+def test_exact_beam_tends_to_yoo_shin_for_slender_blades() -> None:
     """Without rotary inertia only the steady stretch is between them; it falls off with 1/EA, and Coriolis stays."""
 
     def gap(slenderness: float) -> np.ndarray:
@@ -223,7 +223,7 @@ def extrapolated(blade: Blade, omega: float, count: int, order: int, model: Effe
 
 
 @pytest.mark.parametrize("tip", [0.0, 1.0], ids=["free tip", "tip mass with inertia"])
-def test_exact_beam_is_what_the_solver_tends_to(tip: float) -> None:
+def test_the_solver_converges_to_the_exact_beam(tip: float) -> None:
     """Bending, torsion and stretch of a blade on which rotary inertia, prestretch and every coupling are large."""
     blade = kinked(tip=tip)
     expected = EXACT.solve(blade, 5.0, FINE, 8)
@@ -232,14 +232,14 @@ def test_exact_beam_is_what_the_solver_tends_to(tip: float) -> None:
 
 
 @pytest.mark.parametrize(("twist", "pitch"), [(0.0, 0.0), (0.8, 0.0), (0.8, -0.3)])
-def test_assumed_modes_are_what_the_solver_tends_to_without_the_same_effects(twist: float, pitch: float) -> None:
+def test_the_solver_without_the_same_effects_converges_to_assumed_modes(twist: float, pitch: float) -> None:
     """Bending alone, for which the solver's elements are of fourth order; the solver's fourth mode here is a stretch."""
     blade = replace(kinked(twist, 0.0), pitch=pitch)
     frequencies = ASSUMED.solve(blade, 6.0, FINE, 3).frequencies
     np.testing.assert_allclose(extrapolated(blade, 6.0, 3, 4, ASSUMED.effects), frequencies, rtol=1e-7)
 
 
-def test_yoo_shin_is_what_the_solver_tends_to_without_the_same_effects() -> None:
+def test_the_solver_without_the_same_effects_converges_to_yoo_shin() -> None:
     """Bending coupled with stretch, for which the solver's elements are of second order."""
     blade = kinked(inertia=0.0)
     solution = YOO_SHIN.solve(blade, 6.0, FINE, 6)

@@ -47,21 +47,21 @@ def project(pytester: pytest.Pytester) -> pytest.Pytester:
 
 
 @pytest.mark.slow
-def test_the_example_s_solver_passes_where_it_can_and_says_where_it_cannot(project: pytest.Pytester) -> None:
+def test_the_example_solver_passes_or_is_skipped_with_a_reason(project: pytest.Pytester) -> None:
     done = project.runpytest("--southwell-cases", "wright-flapwise,tip-mass", "-rs")
     done.assert_outcomes(passed=21, skipped=10)  # 7 speeds × 3 modes; 5 × 2
     done.stdout.fnmatch_lines(["*no twist, precone, pitch or tip mass"])
 
 
 @pytest.mark.slow
-def test_effects_that_it_lacks_are_expected_failures_not_passes(project: pytest.Pytester) -> None:
+def test_missing_effects_are_expected_failures(project: pytest.Pytester) -> None:
     done = project.runpytest("--southwell-cases", "park-cantilever", "-rx")
     done.assert_outcomes(passed=41, xfailed=1)
     done.stdout.re_match_lines([".*30rad_s-mode1.*no coriolis: .0.11 %.*agrees without them"])
 
 
 @pytest.mark.slow
-def test_the_mistaken_solver_fails_wherever_it_turns_and_its_fault_is_named(project: pytest.Pytester) -> None:
+def test_the_wrong_solver_fails_at_every_speed_and_its_fault_is_named(project: pytest.Pytester) -> None:
     done = project.runpytest("test_mistaken.py", "--southwell-cases", "park-cantilever", "-rA")
     done.assert_outcomes(failed=36, passed=6)
     output = done.stdout.str()
@@ -117,7 +117,7 @@ def solve(blade, omega):
     return 1.01 * found.frequencies[::-1], found.shapes[::-1]
 
 @pytest.mark.southwell(solve=solve, cases=["quick.toml"], known={known})
-def test_off(southwell_cell):
+def test_the_plugin_can_be_disabled(southwell_cell):
     southwell_cell.check()
 """
 
@@ -152,7 +152,7 @@ def test_a_function_of_blade_and_speed_alone() -> None:
 
 
 @pytest.mark.slow
-def test_printed_numbers_are_held_against_it_too() -> None:
+def test_printed_numbers_are_compared_too() -> None:
     case = library.load("wright-flapwise")
 
     def solve(blade, omega, elements, count):
@@ -176,7 +176,7 @@ def test_printed_numbers_are_held_against_it_too() -> None:
         ("return [], np.zeros((0, 21, 3))", "no modes"),
     ],
 )
-def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, phrase: str) -> None:
+def test_an_invalid_answer_fails_with_its_reason(quick: pytest.Pytester, text: str, phrase: str) -> None:
     mark = 'import numpy as np\n@pytest.mark.southwell(solve=solve, cases=["quick.toml"])'
     body = re.sub(r"    found.*\n.*\n", f"    {text}\n", OFF).replace("def solve", "import numpy as np\ndef solve")
     quick.makepyfile(re.sub(r"@pytest.mark.*", mark, body))
@@ -185,7 +185,7 @@ def test_what_is_no_answer_fails_and_says_so(quick: pytest.Pytester, text: str, 
     assert phrase in done.stdout.str()
 
 
-def test_an_exception_of_the_solver_is_shown_as_its_own(quick: pytest.Pytester) -> None:
+def test_an_exception_of_the_solver_is_shown(quick: pytest.Pytester) -> None:
     body = re.sub(r"    found.*\n.*\n", "    return 1 / omega - 1 / omega\n", OFF)
     quick.makepyfile(body.replace("{known}", "{}"))
     done = quick.runpytest("-x")
@@ -204,7 +204,7 @@ def test_an_exception_of_the_solver_is_shown_as_its_own(quick: pytest.Pytester) 
         ('@pytest.mark.southwell(solve=print, cases=["wright-flapwis"])', "did you mean wright-flapwise"),
     ],
 )
-def test_a_mark_that_cannot_be_used_is_one_line(pytester: pytest.Pytester, mark: str, phrase: str) -> None:
+def test_an_invalid_mark_is_reported_in_one_line(pytester: pytest.Pytester, mark: str, phrase: str) -> None:
     pytester.makepyfile(f"import pytest\n{mark}\ndef test_it(southwell_cell):\n    southwell_cell.check()\n")
     done = pytester.runpytest("--strict-markers")
     assert done.ret != 0
@@ -213,13 +213,13 @@ def test_a_mark_that_cannot_be_used_is_one_line(pytester: pytest.Pytester, mark:
     assert "Traceback" not in output
 
 
-def test_a_case_that_is_not_known_on_the_command_line(project: pytest.Pytester) -> None:
+def test_an_unknown_case_is_reported(project: pytest.Pytester) -> None:
     done = project.runpytest("--southwell-cases", "wright")
     assert done.ret != 0
     assert "did you mean wright-flapwise" in done.stdout.str() + done.stderr.str()
 
 
-def test_other_projects_tests_are_left_alone(pytester: pytest.Pytester) -> None:
+def test_tests_of_other_projects_are_unchanged(pytester: pytest.Pytester) -> None:
     pytester.makepyfile("def test_it():\n    pass\n")
     pytester.runpytest().assert_outcomes(passed=1)
 

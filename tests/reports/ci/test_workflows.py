@@ -51,7 +51,7 @@ def scripts() -> dict[str, str]:
 
 @pytest.mark.skipif(BASH is None, reason="no bash")
 @pytest.mark.parametrize("script", scripts().values(), ids=scripts())
-def test_is_sound_shell(script: str) -> None:
+def test_every_shell_line_parses(script: str) -> None:
     checked = subprocess.run(["bash", "-n"], input=script, capture_output=True, text=True)
     assert (checked.returncode, checked.stderr) == (0, "")
 
@@ -68,20 +68,20 @@ def lines() -> dict[str, str]:
     return by_step
 
 
-def test_there_are_such_lines() -> None:
+def test_workflows_contain_shell_lines() -> None:
     commands = {line.split()[0] for line in lines().values()}
     assert {"verify", "gate", "history", "codes", "dashboard"} <= commands
 
 
 @pytest.mark.parametrize("line", lines().values(), ids=lines())
-def test_southwell_understands_it(line: str) -> None:
+def test_commands_in_workflows_are_accepted(line: str) -> None:
     words = re.sub(r'"?\$\{\w+\[@\]\}"?|\$(against|CASES)|"\$@"', "", line)
     tokens = shlex.split(re.sub(r"\$\w+", "something", words))
     command, *_ = cli.app.parse_args(tokens, exit_on_error=False, print_error=False)
     assert command.__module__.startswith("southwell.reports.")
 
 
-def test_no_script_has_anything_pasted_into_it() -> None:
+def test_no_script_contains_an_expression_of_the_workflow() -> None:
     """What others wrote reaches a script by its environment alone: pasted in by ``${{ }}`` it would be run."""
     assert not [name for name, script in scripts().items() if "${{" in script]
 

@@ -73,7 +73,7 @@ def test_no_line_is_a_command_to_ci(text: str) -> None:
     assert not any(line.lstrip().startswith("::") or "##[" in line for line in out.getvalue().splitlines())
 
 
-def test_what_is_no_command_is_as_it_was() -> None:
+def test_lines_without_a_command_are_unchanged() -> None:
     out = io.StringIO()
     print("a::b", "C::D ## [x]", "", "  x ::y", sep="\n", file=LogSafe(out))  # pyright: ignore[reportArgumentType]
     assert out.getvalue() == "a::b\nC::D ## [x]\n\n  x ::y\n"
@@ -88,7 +88,7 @@ def test_a_title_is_no_command(folder: Path, capsys: pytest.CaptureFixture[str])
     assert not [line for line in output.splitlines() if line.lstrip().startswith("::")]
 
 
-def test_annotations_are_commands_still(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_annotations_remain_commands(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "folder.toml").mkdir()
     with pytest.MonkeyPatch.context() as patch:
         patch.chdir(folder)

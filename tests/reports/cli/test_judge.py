@@ -30,7 +30,7 @@ def southwell(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str
     return int(status.value.code or 0), out, err
 
 
-def test_a_healthy_set_is_status_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_a_set_without_defects_has_status_0(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = southwell(capsys, *write(tmp_path, healthy(n=5)))
     assert status == 0
     assert out.startswith("Yes: no defect was found (5 linearisations, 1 operating point)\n")
@@ -53,7 +53,7 @@ def test_limited_evidence_is_status_1(tmp_path: Path, capsys: pytest.CaptureFixt
     assert out.startswith("Open: no defect was found, but the files do not show everything")
 
 
-def test_bad_input_is_one_line_and_status_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_invalid_input_is_one_line_and_status_2(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     path = tmp_path / "case.1.lin"
     path.write_text("nothing\n")
     for words in ([str(path)], [str(tmp_path / "absent.lin")], [str(tmp_path)], []):
@@ -83,7 +83,7 @@ def test_tables_fit(
         assert sum("─" in line for line in tables) >= 1
 
 
-def test_json(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_json_has_findings_and_modes(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     status, out, _ = southwell(capsys, "--json", *write(tmp_path, healthy(n=5)))
     data = json.loads(out)
     assert (status, data["verdict"]) == (0, "Yes")

@@ -42,7 +42,7 @@ def test_a_convention_without_a_pitch_is_refused(capsys: pytest.CaptureFixture[s
     assert "--pitch-convention openfast: no pitch is given: add --pitch" in err
 
 
-def test_show_says_both_signs(capsys: pytest.CaptureFixture[str]) -> None:
+def test_show_prints_both_signs(capsys: pytest.CaptureFixture[str]) -> None:
     line = f"show {DATA / 'elastodyn_main.dat'} --pitch 10 --pitch-convention openfast"
     _, output, _ = southwell(line, capsys)
     assert "-10° (positive with the leading edge downwind; as OpenFAST's BlPitch: 10°)" in output

@@ -29,7 +29,9 @@ def shell(line: str, **variables: str) -> subprocess.CompletedProcess[str]:
         ("southwell --help > /dev/full", {}, 2, 1),
     ],
 )
-def test_whatever_becomes_of_the_output(line: str, variables: dict[str, str], status: int, errors: int) -> None:
+def test_closed_full_or_ascii_output_has_the_right_status(
+    line: str, variables: dict[str, str], status: int, errors: int
+) -> None:
     done = shell(line, **variables)
     assert (done.returncode, done.stderr.count("\n")) == (status, errors), done.stderr
 
@@ -47,13 +49,6 @@ def test_a_run_without_home_or_temporary_folder_in_an_unusual_path(tmp_path: Pat
         text=True,
     )
     assert (process.returncode, (folder / "results.jsonl").exists()) == (0, True), process.stderr
-
-
-@pytest.mark.slow
-def test_a_folder_that_cannot_be_written_is_one_line(tmp_path: Path) -> None:
-    (tmp_path / "file").touch()
-    done = shell(f"southwell verify rotating-cable --out '{tmp_path / 'file' / 'out'}'")
-    assert (done.returncode, done.stderr.count("\n")) == (2, 1), done.stderr
 
 
 def test_a_defect_of_the_program_has_a_status_of_its_own(

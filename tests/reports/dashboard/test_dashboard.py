@@ -47,7 +47,7 @@ def site(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-def test_every_cell_is_there_and_the_first_page_is_small(site: Path) -> None:
+def test_every_cell_is_included_and_the_first_page_is_small(site: Path) -> None:
     first = data(site / "index.html")
     rows = run().cells
     assert len(first["cells"]) == len(rows)
@@ -143,7 +143,7 @@ def test_cores_lines_are_cores_where_a_code_gives_another_mode_the_same_name() -
 
 
 @pytest.mark.slow
-def test_nothing_is_fetched_from_anywhere(site: Path) -> None:
+def test_pages_load_nothing_from_the_network(site: Path) -> None:
     for file in site.rglob("*"):
         if file.suffix in (".html", ".js", ".css"):
             text = re.sub(r'(?s)<script type="application/json".*?</script>', "", file.read_text(encoding="utf-8"))
@@ -173,7 +173,7 @@ def test_page_names_are_files_whatever_the_case_is_called() -> None:
     assert all(re.fullmatch(r"case-[a-z0-9_.-]{1,100}\.html", p) for p in pages)
 
 
-def test_moving_shapes_are_the_beams() -> None:
+def test_animated_shapes_are_those_of_the_beam() -> None:
     """A cantilever at rest: φ(½)/φ(1) = 0.33952, and the second mode's node lies at 0.7834 (Young and Felgar 1949)."""
     cells = [c for c in run().cells if c.case == "park-cantilever" and c.omega == 0.0]
     shapes_of_beam = moving("park-cantilever", cells, RAD_S)
@@ -224,7 +224,7 @@ def test_the_history_has_damping_ratios() -> None:
     assert step["change"] == pytest.approx(0.001)
 
 
-def test_who_moved_is_told_from_the_difference(tmp_path: Path) -> None:
+def test_a_change_is_attributed_to_code_or_solver(tmp_path: Path) -> None:
     changes = moves(history.read(kept(tmp_path / "h.jsonl")).entries)
     assert {(m["run"], m["who"], m["case"]) for m in changes} == {
         (4, "scikit-fem", "tip-mass"),
@@ -249,7 +249,9 @@ def test_every_number_is_in_the_history(tmp_path: Path) -> None:
 
 
 @pytest.mark.slow
-def test_the_command_writes_it_and_bad_input_is_one_line(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_the_command_writes_the_site_and_reports_invalid_input(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     folder = tmp_path / "run"
     folder.mkdir()
     results_file.write(folder / "results.jsonl", replace(samples.run(), plan=()))

@@ -94,7 +94,7 @@ def test_filters_by_mouse(tab: Any, site: Path) -> None:
     assert tab.locator("table.matrix tbody tr").count() == rows
 
 
-def test_a_speed_by_keyboard_and_the_filter_outlives_the_page(tab: Any, site: Path) -> None:
+def test_a_filter_by_speed_is_kept_after_reload(tab: Any, site: Path) -> None:
     tab.goto((site / "index.html").as_uri())
     tab.locator("select[name=speed]").focus()
     tab.keyboard.type("10 rad")
@@ -261,7 +261,7 @@ def test_the_shape_along_the_blade_is_the_beams(tab: Any, site: Path) -> None:
     assert np.interp(0.0, moved[outer], along[outer]) == pytest.approx((0.3 + 6 * 0.7834) / 6.3, abs=5e-3)
 
 
-def test_the_blade_moves_and_stops(tab: Any, site: Path) -> None:
+def test_the_animation_starts_and_stops(tab: Any, site: Path) -> None:
     tab.goto((site / page("park-cantilever")).as_uri())
     picture = "document.querySelector('canvas').toDataURL()"
     first = tab.evaluate(picture)
@@ -279,7 +279,7 @@ def test_the_blade_moves_and_stops(tab: Any, site: Path) -> None:
     assert "10.549 rad/s" in tab.locator("select[name=shape] option").first.inner_text()
 
 
-def test_who_asked_for_less_motion_gets_none(browser: Any, site: Path) -> None:
+def test_reduced_motion_stops_the_animation(browser: Any, site: Path) -> None:
     quiet = browsers.page(browser, reduced_motion="reduce")
     quiet.goto((site / page("park-cantilever")).as_uri())
     first = quiet.evaluate("document.querySelector('canvas').toDataURL()")
@@ -315,7 +315,7 @@ def test_a_case_that_is_not_the_packages_says_that_it_has_no_shapes(tab: Any, si
     assert tab.locator("canvas").count() == 0
 
 
-def test_codes_and_negative_controls(tab: Any, site: Path) -> None:
+def test_codes_and_seeded_faults(tab: Any, site: Path) -> None:
     tab.goto((site / "run-2" / "codes.html").as_uri())
     tab.get_by_role("link", name="pybmodes").press("Enter")
     tab.wait_for_url(re.compile(r"/code-pybmodes\.html$"))
@@ -343,7 +343,7 @@ def test_a_fault_that_many_cells_detect_takes_a_few_lines(tab: Any, tmp_path: Pa
     assert max(rows.evaluate_all("rows => rows.map((r) => r.getBoundingClientRect().height)")) < 80
 
 
-def test_the_history(tab: Any, site: Path) -> None:
+def test_the_history_lists_runs_steps_and_changes(tab: Any, site: Path) -> None:
     tab.goto((site / "history.html").as_uri())
     assert "truncated and left out: line 8 of the file" in tab.locator("main").inner_text()
     assert tab.locator("#runs tbody tr").count() == 7
@@ -406,7 +406,7 @@ def test_on_a_phone_only_heat_maps_scroll_sideways(browser: Any, site: Path, nam
     phone.close()
 
 
-def test_printed_it_is_dark_on_white_and_whole(browser: Any, site: Path) -> None:
+def test_pages_are_printed_dark_on_white_and_complete(browser: Any, site: Path) -> None:
     dark = browsers.page(browser, color_scheme="dark", viewport={"width": 1000, "height": 700})
     dark.goto((site / "index.html").as_uri())
     paper = "getComputedStyle(document.body).backgroundColor"

@@ -59,7 +59,7 @@ def report(*arguments: str) -> subprocess.CompletedProcess[str]:
 
 
 @pytest.mark.slow
-def test_one_command_writes_one_file_that_needs_no_other(folder: Path) -> None:
+def test_the_html_report_is_one_self_contained_file(folder: Path) -> None:
     done = report(str(folder), "--html")
     assert done.returncode == 0, done.stderr
     text = (folder / "report.html").read_text(encoding="utf-8")
@@ -125,7 +125,7 @@ def test_lines_break_before_an_uncertainty_only(folder: Path) -> None:
     assert [e for e in entries if re.search(r"± [\d&]|[✔✘≈?] [+−\d&]|\d %", e)] == []
 
 
-def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
+def test_names_and_reasons_are_escaped(tmp_path: Path) -> None:
     run = samples.run()
     cells = tuple(replace(c, reason=HOSTILE, code=f"alpha {HOSTILE}") if c.code == "alpha" else c for c in run.cells)
     settings = (Setting("beam", HOSTILE, HOSTILE, HOSTILE, "rad_s", {"length": HOSTILE}),)
@@ -138,7 +138,7 @@ def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
 
 @pytest.mark.slow
 @browsers.needed
-def test_a_page_fits_a_telephone_also_with_long_names(tmp_path: Path) -> None:
+def test_a_page_fits_a_phone_with_long_names(tmp_path: Path) -> None:
     name = "blade_of_a_research_turbine_" * 4
     page = tmp_path / "page.html"
     digest = "4e" * 32

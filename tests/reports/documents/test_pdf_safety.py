@@ -27,7 +27,7 @@ TYPST = (
 
 
 @pytest.mark.parametrize("text", TYPST)
-def test_no_text_is_code(tmp_path: Path, text: str) -> None:
+def test_text_is_never_executed_as_typst(tmp_path: Path, text: str) -> None:
     literal = "".join(f"\\{sign}" if sign in punctuation else sign for sign in text)
     (tmp_path / "f.svg").write_text(SVG.format(90, 30, "x"), encoding="utf-8")
     page = (
@@ -40,7 +40,7 @@ def test_no_text_is_code(tmp_path: Path, text: str) -> None:
 
 
 @pytest.mark.slow
-def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
+def test_names_and_reasons_are_escaped(tmp_path: Path) -> None:
     run = samples.run()
     hostile = f"{HOSTILE} {' '.join(TYPST)}"
     cells = tuple(replace(c, reason=hostile, code=f"alpha {HOSTILE}") if c.code == "alpha" else c for c in run.cells)

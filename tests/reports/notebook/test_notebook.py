@@ -143,7 +143,7 @@ def test_a_verification_has_a_row_for_every_cell_and_a_verdict(blade: southwell.
     assert result.plot().get_xscale() == "log"
 
 
-def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blade) -> None:
+def test_a_blade_without_independent_confirmation_does_not_pass(blade: southwell.Blade) -> None:
     assert not southwell.verify(blade, omega=OMEGA, codes=["southwell-equation"], modes=2).passed
 
 
@@ -162,7 +162,7 @@ def test_a_blade_that_is_confirmed_by_nobody_does_not_pass(blade: southwell.Blad
         (lambda b: southwell.verify("park-cantilever", rpm=3.0), "own speeds"),
     ],
 )
-def test_what_cannot_be_is_one_line(call, phrase: str, blade: southwell.Blade) -> None:
+def test_invalid_input_is_reported_in_one_line(call, phrase: str, blade: southwell.Blade) -> None:
     with pytest.raises(CaseError) as raised:
         call(blade)
     assert phrase in str(raised.value)

@@ -55,14 +55,14 @@ def typed(part: str) -> list[str]:
 
 
 @pytest.mark.slow
-def test_it_passes_what_every_adapter_must(folder: Path) -> None:
+def test_the_example_adapter_conforms(folder: Path) -> None:
     done = run(folder, *typed("conform"))
     assert done.returncode == 0, done.stdout + done.stderr
     assert re.search(r"My finite elements: 1\d pass, \d+ not applicable$", done.stdout.strip())
 
 
 @pytest.mark.slow
-def test_its_own_tests_pass(folder: Path) -> None:
+def test_tests_of_the_example_adapter_pass(folder: Path) -> None:
     done = run(folder, sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "test_my_code.py")
     assert done.returncode == 0, done.stdout
     assert re.search(r"^1\d passed, \d+ skipped", done.stdout, re.M)
@@ -75,7 +75,7 @@ def cells(folder: Path, part: str, installed: bool = False) -> list[results.Cell
 
 
 @pytest.mark.slow
-def test_it_is_in_the_matrix(folder: Path) -> None:
+def test_the_example_adapter_is_in_the_matrix(folder: Path) -> None:
     """Passes, or known differences by what it says it leaves out; nothing else."""
     rows = cells(folder, "--codes my_code:CODE")
     assert len(rows) == 42
@@ -85,14 +85,14 @@ def test_it_is_in_the_matrix(folder: Path) -> None:
 
 
 @pytest.mark.nightly
-def test_once_installed_it_goes_by_its_name(folder: Path) -> None:
+def test_an_installed_adapter_is_used_by_name(folder: Path) -> None:
     rows = cells(folder, "--codes my-code", installed=True)
     assert len(rows) == 21
     assert {c.verdict for c in rows} == {"pass"}
 
 
 @pytest.mark.slow
-def test_once_installed_it_is_listed(folder: Path) -> None:
+def test_an_installed_adapter_is_listed(folder: Path) -> None:
     listed = run(folder, *typed("southwell codes"), installed=True).stdout
     row = next(line for line in listed.splitlines() if "my-code" in line)  # its longer fields may go on below
     assert re.search(r"my-code\s+My\b.*✔ 1\.0\s+nothing\s+prestretch", row)

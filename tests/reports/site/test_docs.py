@@ -144,7 +144,7 @@ def test_the_api_has_a_page_for_each_package_and_an_index_that_links_them() -> N
         if page not in TESTED_BY
     ],
 )
-def test_what_a_page_says_to_type_works(page: str, tmp_path: Path) -> None:
+def test_commands_on_pages_run(page: str, tmp_path: Path) -> None:
     """Its files are saved under the names it says, its commands typed in their order, its Python run in one go.
 
     The folder is a checkout, with results where `make verify` leaves them. Only southwell's own commands are typed.
@@ -236,7 +236,7 @@ def built(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 
 @pytest.mark.slow
-def test_it_builds_without_a_warning_with_every_page(built: Path) -> None:
+def test_the_site_builds_without_warnings(built: Path) -> None:
     assert {Path(page).stem for page in PAGES} <= {path.stem for path in built.glob("*.html")}
     names = [registry.code(name).name for name in registry.names()]
     assert all((built / "codes" / f"{name}.html").exists() for name in names)
@@ -245,7 +245,7 @@ def test_it_builds_without_a_warning_with_every_page(built: Path) -> None:
 
 
 @pytest.mark.slow
-def test_nothing_is_fetched_to_read_it(built: Path) -> None:
+def test_the_site_loads_nothing_from_the_network(built: Path) -> None:
     for path in built.rglob("*.html"):
         away = [url for url in Page(path.read_text(encoding="utf-8")).loaded if re.match(r"(https?:)?//", url)]
         assert not away, path
@@ -267,7 +267,7 @@ def test_search_works_from_the_file_system(built: Path) -> None:
 
 
 @pytest.mark.slow
-def test_formulas_are_there_without_a_script(built: Path) -> None:
+def test_formulas_are_shown_without_a_script(built: Path) -> None:
     text = (DOCS / "theory.md").read_text(encoding="utf-8")
     inline = re.sub(r"\$\$.*?\$\$", "", text, flags=re.S)
     html = (built / "theory.html").read_text(encoding="utf-8")

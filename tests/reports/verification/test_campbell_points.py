@@ -45,7 +45,7 @@ def test_measured_points_have_bars_and_both_have_a_legend(files: list[UserResult
     assert not points.legend(files, "absent")
 
 
-def test_points_that_are_not_seen_are_counted(files: list[UserResults]) -> None:
+def test_points_outside_the_diagram_are_counted(files: list[UserResults]) -> None:
     request = SimpleNamespace(speeds=(0.0, 20 * np.pi / 30))
     diagram: Any = SimpleNamespace(blade=SimpleNamespace(name="mine"), request=request)
     assert points.outside(files, diagram, top=100.0) == "2 of 6 added points outside"

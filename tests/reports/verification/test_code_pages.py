@@ -75,7 +75,7 @@ def test_a_failure_does_not_hide_behind_a_larger_known_difference() -> None:
     assert output.startswith("✘ +0.200 %")
 
 
-def test_a_page_says_version_and_refusals() -> None:
+def test_a_page_has_version_and_refusals() -> None:
     text = code_pages.page(RUN, described("scikit-fem"))
     assert text.startswith(
         "# scikit-fem, prestressed beam\n\n`scikit-fem`, 9.9. Shares with Southwell's own solver: **nothing**."
@@ -85,12 +85,12 @@ def test_a_page_says_version_and_refusals() -> None:
     assert taken["shear flexibility"].startswith("refused: finite shear stiffness")
 
 
-def test_what_a_model_leaves_out_is_not_said_to_be_taken() -> None:
+def test_neglected_properties_are_not_listed_as_included() -> None:
     taken = {row[0]: row[1] for row in rows(code_pages.properties(described("exudyn-ancf")))}
     assert taken["rotary inertia"] == "left out, as declared"
 
 
-def test_a_code_without_cells_says_so() -> None:
+def test_a_code_without_cells_is_reported() -> None:
     text = code_pages.page(RUN, described("exact-beam"))
     assert "This run has no cells of this code." in text
 

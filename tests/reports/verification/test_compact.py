@@ -32,7 +32,7 @@ def inside(text: str) -> list[str]:
     return ["".join(node.itertext()) for node in ElementTree.fromstring(text).iter() if node.tag.endswith("text")]
 
 
-def test_text_is_untouched(monkeypatch) -> None:
+def test_text_is_unchanged(monkeypatch) -> None:
     before = inside(full(drawing(), monkeypatch))
     assert "code 1.2345678 #m0" in before
     assert inside(compact(full(drawing(), monkeypatch))) == before

@@ -90,7 +90,7 @@ def test_the_verdict_comes_first_with_counts_that_add_up(report: str) -> None:
         (["pass", "inconclusive", "fail", "fail"], "No: 2 answers contradict Southwell's own solver."),
     ],
 )
-def test_the_answer_is_no_better_than_its_gravest_cell(verdicts: list[str], says: str) -> None:
+def test_the_verdict_is_that_of_the_gravest_cell(verdicts: list[str], says: str) -> None:
     cells = tuple(samples.cell(verdict=v, mode=k) for k, v in enumerate(verdicts, 1))
     assert evidence.answer(Run(cells)).startswith(says)
 
@@ -113,7 +113,9 @@ def test_the_answer_is_no_better_than_its_gravest_cell(verdicts: list[str], says
         ([samples.cell(shares="nothing")], {"origins": (TWIN,)}, "Yes: nothing contradicts"),
     ],
 )
-def test_yes_needs_all_that_a_confirmation_requires(cells: list[Cell], changes: dict[str, Any], says: str) -> None:
+def test_the_verdict_yes_needs_groups_faults_and_a_complete_run(
+    cells: list[Cell], changes: dict[str, Any], says: str
+) -> None:
     run = Run(tuple(cells), **changes)
     assert evidence.verdict(run).startswith(says)
     assert evidence.word(run) == says.partition(":")[0]
@@ -148,7 +150,7 @@ def test_the_papers_table_is_one_line_that_counts_the_values_it_rounds_to() -> N
     assert paper_table.line(samples.run()) == ""
 
 
-def test_a_failure_without_a_number_is_told_first_too() -> None:
+def test_a_failure_without_a_frequency_is_reported_first() -> None:
     crash = samples.cell(
         code="crashed", verdict="fail", value=None, difference=None, uncertainty=None, reason="exit status 0"
     )
@@ -212,7 +214,7 @@ def test_a_code_without_any_answer_has_no_column_but_its_name_and_reason(report:
     assert "○ not run" in matrix_report.heat(only)
 
 
-def test_every_table_is_whole(report: str) -> None:
+def test_every_row_of_a_table_has_all_columns(report: str) -> None:
     tables = Tables(rendered(report)).tables
     assert (
         len(tables) == 2 + len(samples.SPEEDS) + 1 + 1 + 1 + 1
@@ -261,7 +263,7 @@ def test_the_same_results_give_the_same_bytes(tmp_path: Path) -> None:
     assert len(first) == 5
 
 
-def test_words_of_a_case_or_a_code_stay_words(tmp_path: Path) -> None:
+def test_names_and_reasons_are_escaped(tmp_path: Path) -> None:
     run = samples.run()
     cells = tuple(replace(c, reason=HOSTILE, code=f"alpha {HOSTILE}") if c.code == "alpha" else c for c in run.cells)
     settings = (Setting("beam", HOSTILE, HOSTILE, HOSTILE, "rad_s", {"length": HOSTILE}),)

@@ -36,7 +36,7 @@ PLAIN = Run((samples.cell(), samples.cell(omega=20.0, mode=2, family="flapwise",
 WITH = replace(PLAIN, cells=(*PLAIN.cells, SEEN, UNSEEN))
 
 
-def test_they_change_no_status_and_no_answer() -> None:
+def test_measured_data_change_no_status_and_no_verdict() -> None:
     assert summary.status(WITH) == summary.status(PLAIN) == 0
     assert evidence.verdict(WITH) == "Yes: nothing contradicts Southwell's own solver."
     alone = Run((SEEN, UNSEEN))
@@ -44,7 +44,7 @@ def test_they_change_no_status_and_no_answer() -> None:
     assert summary.status(alone) == 1
 
 
-def test_they_are_counted_by_themselves_and_explained() -> None:
+def test_measured_data_are_counted_separately_and_explained() -> None:
     assert "2 ✔ pass, 2 ◇ measured" in evidence.answer(WITH)
     (line,) = (line for line in report.headline(WITH) if line.startswith("Measured"))
     assert line.startswith("Measured: 2 frequencies, no evidence: model error visible in 1, at least 6.7 % (")
@@ -59,7 +59,7 @@ def test_they_are_counted_by_themselves_and_explained() -> None:
     assert "◇" in terminal.legend()
 
 
-def test_the_dashboard_holds_them_to_nothing() -> None:
+def test_measured_data_have_no_target_in_the_dashboard() -> None:
     cells = data.of_case(WITH, "beam")["cells"]
     assert [(c["target"], c["bar"]) for c in cells] == [
         ("0.10 %", None),
@@ -72,7 +72,7 @@ def test_the_dashboard_holds_them_to_nothing() -> None:
     assert data.of_case(WITH, "beam")["lines"] == data.of_case(PLAIN, "beam")["lines"]
 
 
-def test_junit_has_them_as_skipped() -> None:
+def test_measured_data_are_skipped_in_junit() -> None:
     root = ElementTree.fromstring(junit.render(WITH))
     suite = root.find("testsuite")
     assert suite is not None
@@ -85,7 +85,7 @@ def entry(run: Run) -> history.Entry:
     return history.entry(run, "commit", "machine")
 
 
-def test_the_gate_counts_nothing_about_them() -> None:
+def test_changes_of_measured_data_pass_the_gate() -> None:
     """Not that they come, go, move, or show more of the model's error."""
     moved = replace(WITH, cells=(*PLAIN.cells, replace(SEEN, value=15.0, difference=-0.25, target=0.5)))
     for before, after in ((PLAIN, WITH), (WITH, PLAIN), (WITH, moved), (moved, WITH)):
@@ -97,7 +97,7 @@ def test_the_gate_counts_nothing_about_them() -> None:
     )
 
 
-def test_an_answer_that_is_called_a_measurement_is_gone() -> None:
+def test_an_answer_replaced_by_a_measurement_fails_the_gate() -> None:
     renamed = replace(PLAIN.cells[0], role="measured", verdict="measured")
     comparison = gate.compare(entry(PLAIN), entry(replace(PLAIN, cells=(renamed, PLAIN.cells[1]))))
     assert [(g.point.code, g.replacement) for g in comparison.gone] == [("alpha", "measured")]
@@ -118,7 +118,7 @@ def test_only_measured_data_are_measured(tmp_path: Path) -> None:
     assert results_file.read(path).cells == WITH.cells
 
 
-def test_points_lie_over_the_lines_and_bend_none_of_them() -> None:
+def test_measured_points_do_not_change_the_lines() -> None:
     run = samples.run()
     with_data = replace(run, cells=(*run.cells, SEEN, UNSEEN))
     figure = figures.campbell(with_data, "beam", RAD_S)

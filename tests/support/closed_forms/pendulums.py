@@ -17,7 +17,7 @@ G = 9.81
 MASS, KX, KY = 2.0, 50.0, 98.0
 
 
-def turntable(omega: float, kx: float = KX, ky: float = KY) -> mb.Mechanism:
+def turntable(omega: float) -> mb.Mechanism:
     """A mass on two springs at right angles, on a rotating table."""
     return mb.Mechanism(
         (mb.Body("table"), mb.Body("slide"), mb.Body("mass", mb.inertia(MASS))),
@@ -27,7 +27,7 @@ def turntable(omega: float, kx: float = KX, ky: float = KY) -> mb.Mechanism:
             mb.Joint("y", "prismatic", "slide", "mass", mb.at(axis="y"), mb.at(axis="y")),
         ),
         (mb.Motion("turn.rz", rate=omega),),
-        coordinate_springs=(mb.CoordinateSpring("x.z", kx), mb.CoordinateSpring("y.z", ky)),
+        coordinate_springs=(mb.CoordinateSpring("x.z", KX), mb.CoordinateSpring("y.z", KY)),
     )
 
 

@@ -76,7 +76,9 @@ def write(folder: Path, factor: float = 1.0, more: str = "0 n_attachments:", kin
     ],
     ids=["3", "4"],
 )
-def test_certification(tmp_path: Path, factor: float, more: str, printed: tuple[float, ...]) -> None:
+def test_certification_cases_of_bmodes_are_reproduced(
+    tmp_path: Path, factor: float, more: str, printed: tuple[float, ...]
+) -> None:
     """Test03_tower.out and Test04_wires_supported_tower.out of BModes 1.03, read with properties linear between sections."""
     path = write(tmp_path, factor, more)
     assert towers.is_tower(path)
@@ -205,11 +207,11 @@ def test_pybmodes_has_the_same_modes_on_a_platform(tmp_path: Path) -> None:
         (1, WIRES.replace("6 10", "6 99"), "node_attach: 99"),
     ],
 )
-def test_what_is_not_a_tower_on_the_ground_is_refused(tmp_path: Path, kind: int, more: str, message: str) -> None:
+def test_other_supports_of_a_bmodes_tower_are_refused(tmp_path: Path, kind: int, more: str, message: str) -> None:
     with pytest.raises(CaseError, match=message):
         towers.read(write(tmp_path, more=more, kind=kind))
 
 
-def test_it_is_no_blade(tmp_path: Path) -> None:
+def test_a_bmodes_tower_is_not_read_as_a_blade(tmp_path: Path) -> None:
     with pytest.raises(CaseError, match="this is the file of a tower: give the file of"):
         readers.reading(write(tmp_path))

@@ -70,7 +70,7 @@ def hawc2(folder: Path, twist: float = 0.0, mass: float = 0.0, offset: float = 0
     return path
 
 
-def test_hawc2(tmp_path: Path) -> None:
+def test_a_hawc2_tower_is_read(tmp_path: Path) -> None:
     tower, source = towers.read(hawc2(tmp_path, mass=5.0))
     solution = tower_modes(tower, 2)
     assert solution.names == ("1st fore-aft", "1st side-side")  # I_x and I_y
@@ -92,7 +92,7 @@ def test_a_hawc2_tower_that_is_not_symmetric_is_refused(
 @pytest.mark.parametrize(
     ("shape", "structure"), [("outer_shape_bem", "internal_structure_2d_fem"), ("outer_shape", "structure")]
 )
-def test_windio(tmp_path: Path, shape: str, structure: str) -> None:
+def test_a_windio_tower_is_read(tmp_path: Path, shape: str, structure: str) -> None:
     path = tmp_path / "small.yaml"
     path.write_text(WINDIO.format(shape=shape, structure=structure, top=6.0))
     tower, _ = towers.read(path)

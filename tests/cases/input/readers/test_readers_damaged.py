@@ -77,9 +77,7 @@ def honest(whole: Reading, damaged: Reading) -> bool:
 
 
 @pytest.mark.parametrize(("first", "damaged"), PAIRS)
-def test_without_any_one_of_its_lines_a_file_is_refused_or_the_blade_is_the_same(
-    folder: Path, first: str, damaged: str
-) -> None:
+def test_a_file_without_one_line_is_refused_or_gives_the_same_blade(folder: Path, first: str, damaged: str) -> None:
     whole = readers.reading(folder / first)
     lines = (folder / damaged).read_text().splitlines()
     refused = 0
@@ -93,7 +91,7 @@ def test_without_any_one_of_its_lines_a_file_is_refused_or_the_blade_is_the_same
 
 
 @pytest.mark.parametrize(("first", "damaged"), PAIRS)
-def test_cut_short_a_file_is_refused_or_the_blade_is_the_same(folder: Path, first: str, damaged: str) -> None:
+def test_a_truncated_file_is_refused_or_gives_the_same_blade(folder: Path, first: str, damaged: str) -> None:
     whole = readers.reading(folder / first)
     lines = (folder / damaged).read_text().splitlines()
     for k in range(len(lines)):

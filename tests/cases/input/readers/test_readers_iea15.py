@@ -49,7 +49,7 @@ def test_frequencies_agree(blades: tuple[Blade, Blade], omega: float) -> None:
     np.testing.assert_allclose(hawc2, beamdyn, rtol=3e-3)
 
 
-def test_with_the_twist_the_other_way_round_they_would_not(blades: tuple[Blade, Blade]) -> None:
+def test_frequencies_with_reversed_twist_differ(blades: tuple[Blade, Blade]) -> None:
     hawc2, beamdyn = blades
     altered = hertz(replace(hawc2, twist=-hawc2.twist), 0.0) / hertz(beamdyn, 0.0) - 1
     assert np.abs(altered[:2]).max() > 8e-3

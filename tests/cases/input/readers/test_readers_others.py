@@ -16,7 +16,7 @@ from southwell.cases.input.readers.hawc2 import blade as hawc2
 from southwell.cases.input.readers.openfast import elastodyn
 from southwell.core.blade import uniform_blade
 from southwell.core.solve import modes
-from southwell.tests.support.blade_files import assert_same, real
+from southwell.tests.support.blade_files import BEAM, assert_same, real
 
 DATA = Path(__file__).parents[3] / "data" / "blades"
 ST, HTC, BMI, SECTIONS = (DATA / n for n in ("hawc2_st.dat", "hawc2.htc", "bmodes.bmi", "bmodes_sections.dat"))
@@ -133,7 +133,7 @@ def test_iea_15_in_hawc2_and_in_beamdyn_is_one_blade() -> None:
     np.testing.assert_allclose(a.shear_centre, printed, atol=2e-3)
 
 
-def test_nrel_5mw_in_hawc2_weighs_what_it_does_in_elastodyn() -> None:
+def test_nrel_5mw_has_the_same_mass_in_hawc2_and_elastodyn() -> None:
     st, ed = real("nrel5mw/NREL_5MW_st.txt"), real("nrel5mw/NRELOffshrBsline5MW_Blade.dat")
     with pytest.raises(CaseError, match=r"subsets 1:1, 1:2, .*5:2: choose one with --subset"):
         readers.read(st)
@@ -143,7 +143,7 @@ def test_nrel_5mw_in_hawc2_weighs_what_it_does_in_elastodyn() -> None:
     assert weights[0] == pytest.approx(weights[1], rel=0.01)
 
 
-def test_bmodes_numbers_are_where_they_belong() -> None:
+def test_every_number_of_a_bmodes_file_is_in_its_field() -> None:
     reading = readers.reading(BMI)
     blade = reading.blade
     assert (blade.hub_radius, blade.length) == (2.0, 20.0)
@@ -205,28 +205,6 @@ def test_bmodes_decks_are_read_as_pybmodes_reads_them() -> None:
         np.testing.assert_allclose(reading.blade.mass[:, 0, 0], expected.mass_den, rtol=1e-14)
         np.testing.assert_allclose(np.degrees(reading.blade.twist), -expected.str_tw, atol=1e-12)
         np.testing.assert_allclose(sections(reading.blade).GJ, expected.tor_stff, rtol=1e-12)
-
-
-def test_toml_written_and_read_again_is_the_same(tmp_path: Path) -> None:
-    for k, path in enumerate((BMI, HTC, DATA / "beamdyn_main.dat", DATA / "elastodyn_main.dat")):
-        blade = readers.read(path)
-        southwell_toml.write(blade, tmp_path / f"{k}.toml")
-        assert_same(blade, readers.read(tmp_path / f"{k}.toml"))
-
-
-BEAM = """name = "b"
-[blade]
-kind = "beam"
-length = 6.0
-hub_radius = 0.3
-E = 7e10
-G = 2.7e10
-density = 3000.0
-A = 4e-4
-I_y = 2e-7
-I_z = 2e-7
-J = 4e-7
-"""
 
 
 @pytest.mark.parametrize(
@@ -340,7 +318,7 @@ BAD = {
 
 
 @pytest.mark.parametrize("kind", BAD)
-def test_bad_files_are_refused_with_line_and_value(tmp_path: Path, kind: str) -> None:
+def test_invalid_files_are_refused_with_line_and_value(tmp_path: Path, kind: str) -> None:
     file, old, new, mount, message = BAD[kind]
     path = copied(tmp_path, file, old, new)
     with pytest.raises(
@@ -360,13 +338,13 @@ def test_bad_files_are_refused_with_line_and_value(tmp_path: Path, kind: str) ->
         ("[blade]", "[blade", "not TOML"),
     ],
 )
-def test_bad_toml(tmp_path: Path, old: str, new: str, message: str) -> None:
+def test_invalid_toml_is_refused(tmp_path: Path, old: str, new: str, message: str) -> None:
     (tmp_path / "b.toml").write_text(BEAM.replace(old, new))
     with pytest.raises(CaseError, match=message):
         readers.read(tmp_path / "b.toml")
 
 
-def test_bad_sections(tmp_path: Path) -> None:
+def test_invalid_sections_are_refused(tmp_path: Path) -> None:
     southwell_toml.write(readers.read(HTC), tmp_path / "b.toml")
     text = (tmp_path / "b.toml").read_text()
     for old, new, message in (
@@ -423,7 +401,7 @@ def test_bmodes_own_mesh_is_noted(tmp_path: Path) -> None:
         ("------- SERVODYN v1.05.* INPUT FILE ----\nx\n", r"an input file of OpenFAST's SERVODYN, .*or the .fst"),
     ],
 )
-def test_files_beside_a_blades_are_named_for_what_they_are(tmp_path: Path, text: str, kind: str) -> None:
+def test_other_kinds_of_files_are_named_in_the_refusal(tmp_path: Path, text: str, kind: str) -> None:
     (tmp_path / "file.dat").write_text(text)
     with pytest.raises(CaseError, match=rf"file.dat: {kind}"):
         readers.read(tmp_path / "file.dat")

@@ -42,14 +42,14 @@ def primary(
     return path
 
 
-def test_to_elastodyns_blade(folder: Path) -> None:
+def test_a_primary_file_leads_to_elastodyns_blade(folder: Path) -> None:
     reading = readers.reading(primary(folder))
     assert_same(reading.blade, readers.read(DATA / "elastodyn_main.dat"))
     assert [p.name for p in reading.source.files] == ["machine.fst", "elastodyn_blade.dat", "elastodyn_main.dat"]
     assert "BlPitch" in {u.name for u in reading.source.unused}
 
 
-def test_to_beamdyns_blade_on_elastodyns_hub(folder: Path) -> None:
+def test_a_primary_file_leads_to_beamdyns_blade_on_elastodyns_hub(folder: Path) -> None:
     main = folder / "parts" / "elastodyn_main.dat"
     main.write_text(main.read_text().replace("         52   TipRad", "    42.0578   TipRad"))
     reading = readers.reading(primary(folder, "2"))
@@ -88,7 +88,7 @@ def test_fast_7s_primary_file_is_the_main_file() -> None:
         ({}, Mount(main=DATA / "elastodyn_main.dat"), r"--main .*: the .fst file names its main file itself"),
     ],
 )
-def test_bad_ones(folder: Path, change: dict[str, str], mount: Mount, phrase: str) -> None:
+def test_invalid_primary_files_are_refused(folder: Path, change: dict[str, str], mount: Mount, phrase: str) -> None:
     with pytest.raises(CaseError, match=phrase) as caught:
         readers.read(primary(folder, **change), mount)
     assert "\n" not in str(caught.value)

@@ -11,7 +11,6 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.openfast import beamdyn, elastodyn
-from southwell.cases.writers import beamdyn as beamdyn_write
 from southwell.core.blade import straight
 from southwell.core.element.sections import frames
 from southwell.tests.support.blade_files import assert_same, real
@@ -52,7 +51,7 @@ def test_positions_and_twist_are_the_splines_through_the_key_points() -> None:
     np.testing.assert_allclose(blade.stiffness[k] * 2, blade.stiffness[0], rtol=1e-12)
 
 
-def test_sections_stand_in_space_as_beamdyn_stands_them(tmp_path: Path) -> None:
+def test_orientations_of_sections_are_beamdyns(tmp_path: Path) -> None:
     """Its x has no y-component before both turn about the tangent; the shortest swing would roll by 0.017 at the tip."""
     z = np.linspace(0, 40, 81)
     u = z / 40
@@ -79,7 +78,7 @@ def test_old_and_new_headers_are_read_alike() -> None:
     assert_same(beamdyn.read(OLD).blade, beamdyn.read(MAIN).blade)
 
 
-def test_two_main_files_beside_a_blade_file_are_not_chosen_from() -> None:
+def test_two_main_files_beside_a_blade_file_are_ambiguous() -> None:
     with pytest.raises(CaseError, match="2 main files in its folder name it"):
         beamdyn.read(BLADE, STRAIGHT)
 
@@ -94,19 +93,6 @@ def test_elastodyns_main_file_says_how_it_is_mounted(tmp_path: Path) -> None:
     hub.write_text((DATA / "elastodyn_main.dat").read_text())
     with pytest.raises(CaseError, match=r"length: 50 m by the main file or --length, 40\.\d+ m by the key points"):
         beamdyn.read(tmp_path / MAIN.name, Mount(main=hub))
-
-
-@pytest.mark.parametrize("path", [MAIN, OLD])
-def test_written_and_read_again_it_is_the_same(tmp_path: Path, path: Path) -> None:
-    blade = beamdyn.read(path, Mount(hub_radius=1.5, precone=-0.04, pitch=0.1)).blade
-    mount = beamdyn_write.write(blade, tmp_path / path.name)
-    assert_same(blade, beamdyn.read(tmp_path / path.name, mount).blade, 1e-13)
-
-
-def test_rigid_strains_are_not_written(tmp_path: Path) -> None:
-    blade = elastodyn.read(DATA / "elastodyn_blade.dat", Mount(length=50.0)).blade
-    with pytest.raises(CaseError, match="BeamDyn cannot represent rigid strains"):
-        beamdyn_write.write(blade, tmp_path / "x.dat")
 
 
 def test_nrel_5mw_is_the_blade_of_its_elastodyn_file() -> None:
@@ -147,7 +133,9 @@ def edited(tmp_path: Path, file: Path, old: str, new: str, count: int = 1) -> Pa
     ],
     ids=["CRLF", "tabs", "Fortran", "no blank lines", "no ruler", "Fortran key points", "no units"],
 )
-def test_files_written_another_way_are_read_alike(tmp_path: Path, file: Path, old: str, new: str, count: int) -> None:
+def test_other_layouts_of_the_file_give_the_same_blade(
+    tmp_path: Path, file: Path, old: str, new: str, count: int
+) -> None:
     assert_same(readers.read(edited(tmp_path, file, old, new, count)), readers.read(MAIN))
 
 

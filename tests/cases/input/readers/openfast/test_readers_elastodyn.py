@@ -10,8 +10,6 @@ from southwell.cases.input import readers
 from southwell.cases.input.errors import CaseError
 from southwell.cases.input.readers import Mount
 from southwell.cases.input.readers.openfast import elastodyn
-from southwell.cases.writers import elastodyn as elastodyn_write
-from southwell.core.blade import uniform_blade
 from southwell.core.sampling import mass_at
 from southwell.tests.support.blade_files import assert_same, real
 
@@ -20,7 +18,7 @@ BLADE, MAIN = DATA / "elastodyn_blade.dat", DATA / "elastodyn_main.dat"
 MOUNT = Mount(length=50.0, hub_radius=2.0)
 
 
-def test_every_number_of_the_file_is_where_it_belongs() -> None:
+def test_every_number_of_the_file_is_in_its_field() -> None:
     blade = elastodyn.read(BLADE, MOUNT).blade
     np.testing.assert_allclose(blade.stations, [0, 10, 25, 40, 50])
     d = np.diagonal(blade.stiffness, axis1=1, axis2=2)
@@ -60,12 +58,12 @@ def test_the_hub_is_the_main_files_whichever_is_named(path: Path) -> None:
     assert {p.name for p in reading.source.files} == {BLADE.name, MAIN.name}
 
 
-def test_what_is_given_goes_before_what_the_main_file_says() -> None:
+def test_options_take_precedence_over_the_main_file() -> None:
     blade = readers.read(BLADE, Mount(main=MAIN, hub_radius=3.0, precone=0.1))
     assert (blade.length, blade.hub_radius, blade.precone) == (50.0, 3.0, 0.1)
 
 
-def test_two_main_files_that_name_a_blade_are_not_chosen_from(tmp_path: Path) -> None:
+def test_two_main_files_that_name_a_blade_are_ambiguous(tmp_path: Path) -> None:
     for name in ("a.dat", "b.dat"):
         (tmp_path / name).write_text(MAIN.read_text())
     (tmp_path / BLADE.name).write_text(BLADE.read_text())
@@ -73,7 +71,7 @@ def test_two_main_files_that_name_a_blade_are_not_chosen_from(tmp_path: Path) ->
         readers.read(tmp_path / BLADE.name)
 
 
-def test_what_else_lies_beside_it_does_not_matter(tmp_path: Path) -> None:
+def test_other_files_in_the_folder_are_ignored(tmp_path: Path) -> None:
     """Output of a run, an empty file, and another machine's main file that is cut short."""
     for path in (BLADE, MAIN):
         (tmp_path / path.name).write_text(path.read_text())
@@ -81,19 +79,6 @@ def test_what_else_lies_beside_it_does_not_matter(tmp_path: Path) -> None:
     (tmp_path / "b.dat").write_bytes(b"")
     (tmp_path / "c.dat").write_text('52 TipRad\n2 HubRad\n"other.dat" BldFile1\n')
     assert readers.read(tmp_path / BLADE.name).hub_radius == 2.0
-
-
-def test_written_and_read_again_it_is_the_same(tmp_path: Path) -> None:
-    blade = elastodyn.read(BLADE, MOUNT).blade
-    path = tmp_path / BLADE.name
-    assert_same(blade, elastodyn.read(path, elastodyn_write.write(blade, path)).blade)
-
-
-def test_what_the_format_cannot_hold_is_not_written(tmp_path: Path) -> None:
-    beam = uniform_blade("beam", 6.0, 0.3, EA=2.8e7, GJ=1e4, EI_y=1e4, EI_z=1e4, mass=1.2)
-    with pytest.raises(CaseError, match="ElastoDyn cannot represent finite stiffness in stretch"):
-        elastodyn_write.write(beam, tmp_path / "x.dat")
-    assert not (tmp_path / "x.dat").exists()
 
 
 def test_fast_7_columns_give_stretch_torsion_and_moments_of_inertia(tmp_path: Path) -> None:
@@ -165,7 +150,7 @@ def edited(tmp_path: Path, old: str, new: str, count: int = 1) -> Path:
     ],
     ids=["CRLF", "tabs", "Fortran", "plain", "comment", "ruler", "units"],
 )
-def test_files_written_another_way_are_read_alike(tmp_path: Path, change: tuple[str, str, int]) -> None:
+def test_other_layouts_of_the_file_give_the_same_blade(tmp_path: Path, change: tuple[str, str, int]) -> None:
     assert_same(elastodyn.read(edited(tmp_path, *change), MOUNT).blade, elastodyn.read(BLADE, MOUNT).blade)
 
 
@@ -222,7 +207,7 @@ def test_a_truncated_file(tmp_path: Path) -> None:
         elastodyn.read(path, MOUNT)
 
 
-def test_a_file_without_its_length(tmp_path: Path) -> None:
+def test_a_file_without_length_is_refused(tmp_path: Path) -> None:
     (tmp_path / "alone.dat").write_text(BLADE.read_text())
     with pytest.raises(CaseError, match=r"length: .*give --main FILE, or --length and --hub-radius"):
         readers.read(tmp_path / "alone.dat")

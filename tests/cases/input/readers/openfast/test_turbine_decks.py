@@ -231,7 +231,7 @@ def test_oc3_monopile_is_in_the_middle_of_its_participants() -> None:
 
 
 @NEEDS_NREL
-def test_lines_do_not_depend_on_the_steps() -> None:
+def test_lines_do_not_depend_on_the_speed_steps() -> None:
     """Collective and yawing flap meet near rest; small steps would follow the exchange of their motions."""
     read = turbine.read(NREL).turbine
     ends = []
@@ -264,7 +264,7 @@ def notes_of(path: Path) -> str:
     return "\n".join([*source.notes, *map(str, source.unused)])
 
 
-def test_what_changes_the_model_and_is_not_used_is_stated(tmp_path: Path) -> None:
+def test_unused_inputs_that_change_the_model_are_stated(tmp_path: Path) -> None:
     path, main = deck(tmp_path), tmp_path / "main.dat"
     before = notes_of(path)
     for word in ("furling", "MHK", "TwSSDOF1", "BldFile"):
