@@ -61,6 +61,8 @@ from pathlib import Path
 from southwell.cases.regression import history
 source, file, writer, times = sys.argv[1:]
 (entry,) = history.read(Path(source)).entries
+print("ready", flush=True)
+sys.stdin.readline()
 for k in range(int(times)):
     history.append(Path(file), replace(entry, commit=f"{writer}-{k}"))
 """
@@ -72,8 +74,21 @@ def test_appended_by_many_processes_at_once(tmp_path: Path) -> None:
     source = tmp_path / "source.jsonl"
     history.append(source, history.entry(replace(RUN, cells=cells), "source", "a machine", MADE))
     assert source.stat().st_size > 100_000
-    file, writers, times = tmp_path / "history.jsonl", 4, 25
-    jobs = [subprocess.Popen([sys.executable, "-c", WRITER, source, file, str(w), str(times)]) for w in range(writers)]
+    file, writers, times = tmp_path / "history.jsonl", 4, 10
+    jobs = [
+        subprocess.Popen(
+            [sys.executable, "-c", WRITER, source, file, str(w), str(times)],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+        )
+        for w in range(writers)
+    ]
+    for job in jobs:
+        assert job.stdout
+        assert job.stdout.readline() == b"ready\n"
+    for job in jobs:  # all begin together
+        assert job.stdin
+        job.stdin.close()
     assert [job.wait(120) for job in jobs] == [0] * writers
     content = history.read(file)
     assert content.truncated == ()
